@@ -1,0 +1,1 @@
+"""The composition root: names into concrete parts, missions into running loops."""

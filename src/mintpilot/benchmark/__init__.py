@@ -1,0 +1,1 @@
+"""Scenarios by strategies by seeds into records, tables and plots."""

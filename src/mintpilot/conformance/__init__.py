@@ -1,0 +1,1 @@
+"""Checks for plug-ins, ours or a stranger's."""

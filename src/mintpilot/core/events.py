@@ -1,0 +1,129 @@
+"""What a mission tells while it runs. The recorder turns these into the run folder."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from mintpilot.core.gap import KnowledgeGap
+from mintpilot.core.mission import Mission, Verdict
+from mintpilot.core.observation import Detection, Frame
+from mintpilot.core.plan import Plan, PlanningProblem
+from mintpilot.core.query import Answer, Question
+from mintpilot.core.semantic_map import SemanticMap
+from mintpilot.core.task import Task
+from mintpilot.core.trajectory import FlightLog, Trajectory
+from mintpilot.core.tree import Certificate, GapAccount, Mint, ScoredQuery
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MissionStarted:
+    """The first event."""
+
+    mission: Mission
+    task: Task
+    seed: int | None
+    strategy: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class FrameSeen:
+    """A picture was taken and looked at."""
+
+    index: int
+    frame: Frame
+    detections: tuple[Detection, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class MapUpdated:
+    """The semantic map was replaced."""
+
+    map: SemanticMap
+    why: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Deliberated:
+    """Gaps were found and the tree was built; either a query was chosen or the asking stopped."""
+
+    round: int
+    gaps: tuple[KnowledgeGap, ...]
+    problem: PlanningProblem
+    mint: Mint | None
+    """None for strategies that build no tree."""
+    chosen: ScoredQuery | None
+    alternatives: tuple[ScoredQuery, ...]
+    """The best few of the other cuts."""
+    certificate: Certificate | None
+    seconds: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Asked:
+    """A question was put and answered (or not)."""
+
+    question: Question
+    scored: ScoredQuery
+    answer: Answer
+    wording_s: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class PlanChosen:
+    """What will be flown, and the account of every gap."""
+
+    plan: Plan | None
+    certificate: Certificate
+    accounts: tuple[GapAccount, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class LegFlown:
+    """One trajectory was flown, to its end or not."""
+
+    phase: str
+    """``survey``, ``mission`` or ``return``."""
+    stop_id: str
+    trajectory: Trajectory
+    log: FlightLog
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Noticed:
+    """Something worth a line in the report: a contradiction, a silent operator, something new seen in flight."""
+
+    kind: str
+    """A short stable name, e.g. ``contradiction``."""
+    text: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Timed:
+    """How long a stage took."""
+
+    stage: str
+    """``survey``, ``perception``, ``mapping``, ``deliberation``, ``wording``, ``answer``, ``planning``, ``flight``."""
+    seconds: float
+    """Wall-clock time of this machine; for ``answer`` the operator's latency."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MissionEnded:
+    """The last event."""
+
+    verdict: Verdict
+
+
+Event: TypeAlias = (
+    MissionStarted
+    | FrameSeen
+    | MapUpdated
+    | Deliberated
+    | Asked
+    | PlanChosen
+    | LegFlown
+    | Noticed
+    | Timed
+    | MissionEnded
+)

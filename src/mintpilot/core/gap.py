@@ -1,0 +1,159 @@
+"""Knowledge gaps [u], what may be assumed of them, and what is believed of them jointly."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+
+from mintpilot.core.errors import MissionError
+from mintpilot.core.geometry import Floats, Vec3, frozen
+from mintpilot.core.observation import Attribute
+
+PASSABLE = "passable"
+BLOCKED = "blocked"
+PRESENT = "present"
+ABSENT = "absent"
+
+
+class GapKind(StrEnum):
+    """What kind of thing is not known (method, section 1)."""
+
+    OBSTACLE = "obstacle"
+    """Is this region passable? Values: `PASSABLE`, `BLOCKED`."""
+    TARGET = "target"
+    """Which object does this phrase mean? Values: ids of the candidates."""
+    PRESENCE = "presence"
+    """Is somebody in this place? Values: `PRESENT`, `ABSENT`."""
+    VALUE = "value"
+    """An ordered quantity. Values: numbers in ascending order, as text."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Candidate:
+    """One object that a phrase may mean; its id is the value of the target gap."""
+
+    id: str
+    position_m: Vec3
+    attributes: tuple[Attribute, ...] = ()
+    size_m: Vec3 = (0.0, 0.0, 0.0)
+    description: str = ""
+    """In plain words, e.g. ``the small red box``."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class KnowledgeGap:
+    """One unknown variable with a finite domain and a prior."""
+
+    id: str
+    """Stable name; the same gap keeps it when the map is updated, e.g. ``obstacle:smoke-1``."""
+    kind: GapKind
+    subject: str
+    """Id of the region or room, or the phrase of the instruction, that it is about."""
+    description: str
+    """The subject as the operator can see it, with its article: ``the grey smoke near the gate``."""
+    values: tuple[str, ...]
+    """The domain: at least one value, none twice. The order has no meaning except for `GapKind.VALUE`."""
+    prior: tuple[float, ...]
+    """Probability of each value; sums to one."""
+    position_m: Vec3
+    """Where its subject is (for a target gap: the middle of the candidates)."""
+    candidates: tuple[Candidate, ...] = ()
+    """For a target gap: one per value, in the same order."""
+
+    def __post_init__(self) -> None:
+        if not self.values or len(set(self.values)) != len(self.values):
+            raise MissionError(f"gap '{self.id}': values {self.values} must be one or more, none twice")
+        if len(self.prior) != len(self.values):
+            raise MissionError(f"gap '{self.id}': {len(self.prior)} probabilities for {len(self.values)} values")
+        if any(not 0 <= p <= 1 for p in self.prior) or not math.isclose(sum(self.prior), 1, abs_tol=1e-6):
+            raise MissionError(f"gap '{self.id}': prior {self.prior} must be from 0 to 1 each and sum to 1")
+        if self.candidates and tuple(c.id for c in self.candidates) != self.values:
+            raise MissionError(f"gap '{self.id}': the candidates' ids must be its values, in order")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CorrelationGroup:
+    """Gaps whose priors do not multiply, e.g. two clouds from one fire."""
+
+    gaps: tuple[str, ...]
+    """Ids of two or more gaps; a gap is in one group at most."""
+    joint: tuple[tuple[tuple[str, ...], float], ...]
+    """Probability of each combination of values (in the order of ``gaps``); those not named have none. Sums to one
+    and replaces the members' own priors."""
+
+
+@dataclass(frozen=True, slots=True)
+class Assumptions:
+    """What a plan may take for granted [A]: for some gaps, the values that are still possible.
+
+    A gap that is not named is open with all its values. Equal contents make equal, hashable assumptions.
+    """
+
+    items: tuple[tuple[str, frozenset[str]], ...] = ()
+    """(gap id, values still possible), sorted by gap id."""
+
+    @classmethod
+    def of(cls, possible: Mapping[str, Iterable[str]]) -> Assumptions:
+        """From a mapping of gap ids to their possible values."""
+        return cls(tuple(sorted((gap, frozenset(values)) for gap, values in possible.items())))
+
+    @classmethod
+    def exactly(cls, values: Mapping[str, str]) -> Assumptions:
+        """One value for each named gap: a joint hypothesis when all gaps are named."""
+        return cls.of({gap: (value,) for gap, value in values.items()})
+
+    def possible(self, gap: KnowledgeGap) -> tuple[str, ...]:
+        """The values of the gap that are still possible, in the gap's own order."""
+        for name, values in self.items:
+            if name == gap.id:
+                return tuple(v for v in gap.values if v in values)
+        return gap.values
+
+    def is_open(self, gap: KnowledgeGap) -> bool:
+        """True while more than one value is possible."""
+        return len(self.possible(gap)) > 1
+
+    def assume(self, gap_id: str, values: Iterable[str]) -> Assumptions:
+        """These assumptions with the gap's values replaced."""
+        return Assumptions.of({**dict(self.items), gap_id: values})
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Belief:
+    """Joint distribution over the gaps' values: one axis per gap, in the order of ``gaps``."""
+
+    gaps: tuple[KnowledgeGap, ...]
+    """Sorted by id, so that the order in the input never matters."""
+    probability: Floats
+    """Shape (number of values of each gap …); sums to one. With no gaps: shape (), the value 1."""
+
+    def __post_init__(self) -> None:
+        if tuple(g.id for g in self.gaps) != tuple(sorted({g.id for g in self.gaps})):
+            raise MissionError("the gaps of a belief must be sorted by id, none twice")
+        if self.probability.shape != tuple(len(g.values) for g in self.gaps):
+            raise MissionError(
+                f"a belief of shape {self.probability.shape} over gaps with {[len(g.values) for g in self.gaps]} values"
+            )
+        frozen(self.probability)
+
+    def axis(self, gap_id: str) -> int:
+        """The axis of that gap. Raises `KeyError` for an unknown one."""
+        for index, gap in enumerate(self.gaps):
+            if gap.id == gap_id:
+                return index
+        raise KeyError(gap_id)
+
+    def marginal(self, gap_id: str) -> Floats:
+        """Probability of each value of that gap, shape (n,)."""
+        axis = self.axis(gap_id)
+        others = tuple(i for i in range(len(self.gaps)) if i != axis)
+        marginal: Floats = np.asarray(self.probability.sum(axis=others), float)
+        return marginal
+
+    def probability_of(self, gap_id: str, value: str) -> float:
+        """Probability of one value of that gap."""
+        return float(self.marginal(gap_id)[self.gaps[self.axis(gap_id)].values.index(value)])

@@ -1,0 +1,102 @@
+"""What the drone sees [V] and what it makes of one picture [O]."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mintpilot.core.errors import MapError
+from mintpilot.core.geometry import Box, Floats, Vec3, frozen
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CameraModel:
+    """A pinhole camera without distortion; pixel (0, 0) is the top-left one, its centre at (0.5, 0.5)."""
+
+    width: int
+    """Pixels across."""
+    height: int
+    """Pixels down."""
+    fx: float
+    """Focal length in pixels, horizontally."""
+    fy: float
+    """Focal length in pixels, vertically."""
+    cx: float
+    """Principal point, pixels from the left edge."""
+    cy: float
+    """Principal point, pixels from the top edge."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Frame:
+    """One RGB-D picture.
+
+    The camera frame is the optical one: x right, y down, z forward. Depth is measured along z.
+    """
+
+    time_s: float
+    """When it was taken, seconds on the vehicle's clock."""
+    rgb: NDArray[np.uint8]
+    """Colours (height, width, 3)."""
+    depth_m: NDArray[np.float32]
+    """Distance along the optical axis (height, width), metres; NaN or 0 where the sensor got no return."""
+    camera: CameraModel
+    """The lens."""
+    world_from_camera: Floats
+    """Pose of the camera's optical frame, homogeneous (4, 4)."""
+
+    def __post_init__(self) -> None:
+        size = (self.camera.height, self.camera.width)
+        if self.rgb.shape != (*size, 3) or self.depth_m.shape != size:
+            raise MapError(
+                f"picture {self.rgb.shape} with depth {self.depth_m.shape}: the camera model says {size}; "
+                "register depth to colour and give both the camera's size"
+            )
+        if self.world_from_camera.shape != (4, 4) or not np.isfinite(self.world_from_camera).all():
+            raise MapError("camera pose must be a finite (4, 4) matrix; drop the frame or mend the pose")
+        for array in (self.rgb, self.depth_m, self.world_from_camera):
+            frozen(array)
+
+
+class RegionKind(StrEnum):
+    """Volumes whose passability a camera cannot settle, or that somebody declared uncertain."""
+
+    SMOKE = "smoke"
+    DOOR = "door"
+    AREA = "area"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Attribute:
+    """One thing that can be said of an object, e.g. ``colour: red``. An object may have several of one name."""
+
+    name: str
+    value: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Detection:
+    """One object found in one frame."""
+
+    label: str
+    """Semantic class: ``box``, ``person``, ``fire``, ``smoke``, ``door``, ``rack`` …"""
+    score: float
+    """Confidence, 0 to 1."""
+    box_m: Box
+    """Extent in the world."""
+    attributes: tuple[Attribute, ...] = ()
+    """Colour, size, shape …, in plain words."""
+    pixels: tuple[int, int, int, int] = (0, 0, 0, 0)
+    """Bounding box in the picture: left, top, right, bottom (exclusive)."""
+    points_m: Floats | None = None
+    """Some of its surface points (n, 3) in the world; for smoke, points inside the visible front."""
+    frame_index: int = -1
+    """Which frame it came from, for provenance."""
+
+    @property
+    def position_m(self) -> Vec3:
+        """Centre of the extent, metres."""
+        return self.box_m.centre_m

@@ -1,0 +1,148 @@
+"""Plans [tau] with their cost [C] and what they rely on; the problem that a planner is given."""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from mintpilot.core.errors import MissionError
+from mintpilot.core.gap import KnowledgeGap
+from mintpilot.core.geometry import Floats, Vec3, frozen
+from mintpilot.core.semantic_map import SemanticMap
+from mintpilot.core.task import Action
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class VehicleLimits:
+    """What the vehicle can do."""
+
+    radius_m: float = 0.3
+    """No part of the vehicle is further from its centre, metres."""
+    margin_m: float = 0.1
+    """Clearance kept besides the radius, metres."""
+    cruise_mps: float = 1.5
+    """Speed on straight legs, metres per second; costs are lengths divided by it."""
+    max_acceleration_mps2: float = 2.0
+    """Of any commanded motion."""
+    endurance_s: float = float("inf")
+    """Flight time that is left for the mission, seconds; longer plans do not exist."""
+
+    def __post_init__(self) -> None:
+        for name in ("radius_m", "cruise_mps", "max_acceleration_mps2", "endurance_s"):
+            if not getattr(self, name) > 0:
+                raise MissionError(f"vehicle {name} = {getattr(self, name)}: must be above 0")
+        if not self.margin_m >= 0:
+            raise MissionError(f"vehicle margin_m = {self.margin_m}: must not be below 0")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Site:
+    """One place at which a stop can be fulfilled."""
+
+    position_m: Vec3
+    """The thing itself, or the viewpoint; the drone goes to flyable space within ``reach_m`` of it."""
+    reach_m: float = 1.5
+    """How near is near enough, metres."""
+    value: str = ""
+    """For a stop bound to a gap: the value of the gap under which this is the place."""
+    label: str = ""
+    """Short name for reports: ``box-2``."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Stop:
+    """One place to be visited, in order."""
+
+    id: str
+    action: Action
+    sites: tuple[Site, ...]
+    """One; for a stop bound to a target gap, one per value of the gap."""
+    gap: str = ""
+    """Target gap that says which site is meant, or presence gap that says whether the stop is needed at all."""
+    optional: bool = False
+    """True for a stop that is needed only if its presence gap has the value of its one site. An optional stop may be
+    put anywhere between the others; the ordered ones keep their order."""
+    dwell_s: float = 2.0
+    """Time spent there, seconds; part of the cost."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class PlanningProblem:
+    """All that a planner needs to know."""
+
+    map: SemanticMap
+    start_m: Vec3
+    """Where the drone is."""
+    stops: tuple[Stop, ...]
+    """Ordered stops in order, then the optional ones."""
+    gaps: tuple[KnowledgeGap, ...]
+    """The open gaps, sorted by id. An obstacle gap's subject is the id of an open region of the map; regions known
+    to be blocked, and open ones without a gap, are obstacles to every plan."""
+    limits: VehicleLimits
+    finished: frozenset[str] = frozenset()
+    """Ids of stops that were already fulfilled; they are not among ``stops``."""
+
+    def gap(self, gap_id: str) -> KnowledgeGap:
+        """The gap with that id. Raises `KeyError` for an unknown one."""
+        for gap in self.gaps:
+            if gap.id == gap_id:
+                return gap
+        raise KeyError(gap_id)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Leg:
+    """The way to one stop, and the stay there."""
+
+    stop: Stop
+    site: Site
+    path_m: Floats
+    """Way-points (n, 3), metres, from where the last leg ended; n is at least 1."""
+    length_m: float
+    duration_s: float
+    """Flight at cruise speed plus the stay, seconds."""
+
+    def __post_init__(self) -> None:
+        frozen(self.path_m)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Plan:
+    """Ordered legs with their cost, and the gaps that the plan would break on or lose by (method, section 2)."""
+
+    legs: tuple[Leg, ...]
+    cost_s: float
+    """Seconds of flight, stays included [C]."""
+    relies_on: frozenset[str]
+    """Ids of gaps, open under the assumptions it was planned with, that it depends on. Empty for a cautious plan."""
+    enters: frozenset[str]
+    """Ids of all obstacle gaps whose regions it flies through, open or not."""
+    binds: tuple[tuple[str, str], ...] = ()
+    """(gap id, value) chosen for each target gap, sorted."""
+    skips: frozenset[str] = frozenset()
+    """Ids of presence gaps whose room it leaves out."""
+    signature: str = field(default="", compare=False)
+    """Stable digest of places and way: plans of one plan class share it. Filled in when empty."""
+
+    def __post_init__(self) -> None:
+        if not self.signature:
+            digest = hashlib.blake2b(digest_size=8)
+            for leg in self.legs:
+                digest.update(leg.stop.id.encode() + b"\0" + leg.site.value.encode() + b"\0")
+                digest.update(np.round(leg.path_m, 6).tobytes())
+            object.__setattr__(self, "signature", digest.hexdigest())
+
+    @property
+    def path_m(self) -> Floats:
+        """The whole way (n, 3), metres; a way-point shared by two legs is given once."""
+        if not self.legs:
+            return np.zeros((0, 3))
+        parts = [self.legs[0].path_m, *(leg.path_m[1:] for leg in self.legs[1:])]
+        return np.concatenate(parts)
+
+    @property
+    def length_m(self) -> float:
+        """Length of the way, metres."""
+        return float(sum(leg.length_m for leg in self.legs))

@@ -1,0 +1,273 @@
+"""The ports: what the method needs of the outside. Each says what, never how.
+
+All are synchronous; an adapter that needs a thread or an event loop hides it and owns its time-outs.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Protocol, TypeAlias
+
+from mintpilot.core.events import Event
+from mintpilot.core.gap import Assumptions, Belief, KnowledgeGap
+from mintpilot.core.geometry import Bools, Floats, Ints
+from mintpilot.core.mission import AskingSettings, Verdict
+from mintpilot.core.observation import Detection, Frame
+from mintpilot.core.plan import Plan, PlanningProblem, Stop
+from mintpilot.core.query import Answer, Query, Question
+from mintpilot.core.trajectory import FlightLog, Trajectory, VehicleState
+from mintpilot.core.tree import Certificate, Mint, ScoredQuery
+
+
+class Perception(Protocol):
+    """Finds things in one picture. Called by the loop for every frame, in order."""
+
+    def detect(self, frame: Frame, index: int) -> tuple[Detection, ...]:
+        """What the frame shows; ``index`` goes into `Detection.frame_index`.
+
+        Frames without any usable depth give no detections. Raises `DeviceError` when a model or its server fails.
+        """
+        ...
+
+
+class PlanSpace(Protocol):
+    """The plans of one problem, made when asked for and remembered (method, section 2)."""
+
+    def optimistic(self, given: Assumptions) -> Plan | None:
+        """The cheapest plan with every open gap at its most favourable value; None where there is none.
+
+        `Plan.relies_on` names the open gaps that it would break on or lose by.
+        """
+        ...
+
+    def cautious(self, given: Assumptions) -> Plan | None:
+        """The cheapest plan that succeeds whatever the open gaps turn out to be; None where there is none."""
+        ...
+
+    @property
+    def searches(self) -> int:
+        """How many searches of the map were made so far."""
+        ...
+
+
+class Planner(Protocol):
+    """Plans through a map. Called whenever the map, the task or the drone's place has changed."""
+
+    def open(self, problem: PlanningProblem) -> PlanSpace:
+        """The plans of that problem. Equal problems give equal plans.
+
+        Raises:
+            InfeasibleError: the start is not in flyable space, or a stop can be reached under no hypothesis.
+        """
+        ...
+
+
+class ImpactMetric(Protocol):
+    """How far two paths differ."""
+
+    def divergence(self, a_m: Floats, b_m: Floats) -> float:
+        """Distance in metres between two paths (n, 3) and (m, 3); 0 for equal ones, symmetric."""
+        ...
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class QuerySituation:
+    """What a query objective may look at. Joint hypotheses are flattened; those with no probability are left out."""
+
+    probability: Floats
+    """(n,) sums to one."""
+    class_of: Ints
+    """(n,) plan class of each joint hypothesis, 0 to m - 1."""
+    regret_s: Floats
+    """(m, n) seconds lost by flying the plan of class i under hypothesis j instead of the best; the price of failure
+    where it would fail."""
+    yes: Bools
+    """(q, n) the true answer to each candidate cut."""
+    settings: AskingSettings
+
+
+class QueryObjective(Protocol):
+    """The worth of candidate cuts (method, section 4). Called once per question."""
+
+    def scores(self, situation: QuerySituation) -> Floats:
+        """Worth of each candidate (q,); higher is better; 0 or less: not worth asking.
+
+        Raises:
+            LimitError: the situation is larger than the objective can handle.
+        """
+        ...
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Situation:
+    """What a strategy decides on."""
+
+    problem: PlanningProblem
+    space: PlanSpace
+    belief: Belief
+    """Over all open gaps."""
+    confirmed: frozenset[str]
+    """Ids of obstacle gaps that got an explicit yes."""
+    withdrawn: frozenset[str]
+    """Ids of queries answered UNSURE: not to be asked again."""
+    asked: tuple[tuple[Query, bool], ...]
+    """Cuts that were answered, with the answer, oldest first."""
+    silent: bool
+    """True after a time-out: no more questions."""
+    settings: AskingSettings
+    metric: ImpactMetric
+    objective: QueryObjective
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Ask:
+    """Put this cut to the operator."""
+
+    scored: ScoredQuery
+    alternatives: tuple[ScoredQuery, ...] = ()
+    mint: Mint | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Fly:
+    """Ask no more; fly this plan (None: stay safe where you are)."""
+
+    plan: Plan | None
+    certificate: Certificate
+    mint: Mint | None = None
+    unsafe: bool = False
+    """True only for baselines that fly through what is not known passable; refused outside a simulator."""
+
+
+Decision: TypeAlias = Ask | Fly
+
+
+class Strategy(Protocol):
+    """A method of asking. One file each in ``strategies/``; compared by the benchmark."""
+
+    def decide(self, situation: Situation) -> Decision:
+        """Ask, or fly. Called again after every answer, with the new belief."""
+        ...
+
+
+class Operator(Protocol):
+    """The person who knows. May be a terminal, a web page, a voice, or a script."""
+
+    def ask(self, question: Question, patience_s: float) -> Answer:
+        """Shows or says the question and waits at most ``patience_s`` seconds; silence is `Reply.TIMEOUT`."""
+        ...
+
+    def tell(self, text: str) -> None:
+        """Shows or says something that needs no answer."""
+        ...
+
+
+class TruthOracle(Protocol):
+    """Knows the world, for scripted operators and for scoring; never used to plan."""
+
+    def value_of(self, gap: KnowledgeGap) -> str | None:
+        """The true value of the gap; None where it has none (its subject does not exist)."""
+        ...
+
+
+Watch: TypeAlias = Callable[[VehicleState], bool]
+"""Called at the camera's rate while flying; returning True asks for a stop."""
+
+
+class Vehicle(Protocol):
+    """Flies. A simulator or a link to an autopilot."""
+
+    def state(self) -> VehicleState:
+        """Where it is now."""
+        ...
+
+    def follow(self, trajectory: Trajectory, watch: Watch | None = None) -> FlightLog:
+        """Flies the trajectory, which starts where the vehicle is; returns when it hovers at the end, or has stopped.
+
+        Raises:
+            DeviceError: the link is gone. The vehicle is then in its own fail-safe.
+        """
+        ...
+
+    def act(self, stop: Stop, dwell_s: float) -> None:
+        """Does what the stop is for (pick, deliver, look) while hovering for ``dwell_s`` seconds."""
+        ...
+
+    def hold(self) -> None:
+        """Hovers where it is. Safe to call at any time, also after a failure."""
+        ...
+
+
+class Camera(Protocol):
+    """Takes pictures from the vehicle."""
+
+    def capture(self) -> Frame:
+        """The present view. Raises `DeviceError` when the camera is gone."""
+        ...
+
+
+class Judge(Protocol):
+    """Says how a mission really went."""
+
+    def verdict(self) -> Verdict | None:
+        """A failure that has happened, as soon as it has; None while nothing went wrong."""
+        ...
+
+    def final(self) -> Verdict:
+        """The verdict at the end, success included."""
+        ...
+
+
+class Recorder(Protocol):
+    """Keeps what happened."""
+
+    def record(self, event: Event) -> None:
+        """Keeps one event. Never raises for lack of disk in mid-flight: it notes the loss and goes on."""
+        ...
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Completion:
+    """What a language model returned."""
+
+    text: str
+    model: str
+    seconds: float
+    tokens: int = 0
+
+
+class LanguageModel(Protocol):
+    """Completes text. Never decides meaning (method, section 4)."""
+
+    def complete(self, prompt: str, *, schema: type | None, timeout_s: float) -> Completion:
+        """One completion; with ``schema`` (a pydantic model) the text should be JSON of that form, but is not trusted.
+
+        Raises:
+            DeviceError: no answer within ``timeout_s``, or the model is gone.
+        """
+        ...
+
+
+__all__ = [
+    "Ask",
+    "Camera",
+    "Completion",
+    "Decision",
+    "Fly",
+    "ImpactMetric",
+    "Judge",
+    "LanguageModel",
+    "Operator",
+    "Perception",
+    "PlanSpace",
+    "Planner",
+    "QueryObjective",
+    "QuerySituation",
+    "Recorder",
+    "Situation",
+    "Strategy",
+    "TruthOracle",
+    "Vehicle",
+    "Watch",
+]

@@ -1,0 +1,160 @@
+"""The Minimal Information Neuro-Symbolic Tree [T] and the reasons for asking or not."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+from mintpilot.core.gap import Assumptions, Belief
+from mintpilot.core.geometry import Ints, frozen
+from mintpilot.core.plan import Plan
+from mintpilot.core.query import Query
+
+
+class LeafReason(StrEnum):
+    """Why a node was not branched any further (method, section 3)."""
+
+    RELIES_ON_NOTHING = "relies-on-nothing"
+    """The optimistic plan depends on no open gap: fly it."""
+    CAUTIOUS_IS_GOOD_ENOUGH = "cautious-is-good-enough"
+    """The plan that succeeds whatever holds is within the tolerances: fly that one."""
+    TARGET_IS_CLEAR_ENOUGH = "target-is-clear-enough"
+    """What is left are target gaps with entropy at or under the threshold: fly to the likeliest."""
+    INFEASIBLE = "infeasible"
+    """Nothing can be flown here, whatever the open gaps turn out to be."""
+    NOT_EXPANDED = "not-expanded"
+    """The bound on nodes was reached: the cautious plan, if any."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Node:
+    """One node of the tree."""
+
+    given: Assumptions
+    """What is assumed here."""
+    probability: float
+    """Of the assumptions, under the belief that the tree was built for."""
+    optimistic: Plan | None
+    cautious: Plan | None
+    divergence_m: float | None = None
+    """Distance between the two paths, metres, where both exist."""
+    entropy_bits: float | None = None
+    """Goal entropy of the target gap that was looked at here, if any."""
+    branch_on: str = ""
+    """Id of the gap that the children differ in; empty for a leaf."""
+    children: tuple[Node, ...] = ()
+    leaf: LeafReason | None = None
+    plan: Plan | None = None
+    """For a leaf: the plan to fly; None when there is none."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PlanClass:
+    """All joint hypotheses that lead to the same plan."""
+
+    plan: Plan | None
+    """None: under these hypotheses nothing can be flown."""
+    probability: float
+    given: tuple[Assumptions, ...]
+    """Which hypotheses: one entry per leaf."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Mint:
+    """The tree with its leaves sorted into plan classes."""
+
+    root: Node
+    belief: Belief
+    """What the tree was built for. Its axes are the gaps that some plan can depend on; others are irrelevant."""
+    classes: tuple[PlanClass, ...]
+    """Sorted by falling probability, then by cost."""
+    class_of: Ints
+    """Index into ``classes`` for each joint hypothesis; the shape of ``belief.probability``."""
+    nodes: int
+    """Number of nodes."""
+    not_expanded: int = 0
+    """Leaves that the bound on nodes cut off."""
+
+    def __post_init__(self) -> None:
+        frozen(self.class_of)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ScoredQuery:
+    """A candidate cut with its worth."""
+
+    query: Query
+    score: float
+    """By the objective that chose it; higher is better."""
+    gain_bits: float
+    """Mutual information of the answer and the plan class, bits."""
+    regret_saved_s: float
+    """Expected seconds of regret that the answer saves."""
+    yes_probability: float
+    proposed_by: str = "enumeration"
+    """Who proposed it: the enumeration, or a language model by name."""
+
+
+class StopReason(StrEnum):
+    """Why no (further) question is asked (method, section 5)."""
+
+    NO_GAPS = "no-gaps"
+    """Nothing is unknown that bears on the task."""
+    ONE_CLASS = "one-class"
+    """One plan class holds at least 1 - alpha of the mass."""
+    GOOD_FOR_ALL = "good-for-all"
+    """A plan succeeds within delta_c of the best under every joint hypothesis above the floor."""
+    NO_GAIN = "no-gain"
+    """No cut that is left tells anything of the plan, or none is worth its price."""
+    BUDGET = "budget"
+    """The number of questions allowed is spent."""
+    SILENCE = "silence"
+    """The operator does not answer."""
+    INFEASIBLE = "infeasible"
+    """No plan exists under any hypothesis that is left."""
+    NEVER_ASKS = "never-asks"
+    """The strategy does not ask."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Certificate:
+    """The stop reason with its numbers: no further answer would have changed the flight by more than ``bound_s``."""
+
+    reason: StopReason
+    top_class_probability: float
+    """Mass of the likeliest plan class."""
+    entropy_bits: float
+    """Of the plan-class distribution."""
+    best_gain_bits: float
+    """Of the best cut that was left."""
+    bound_s: float
+    """Largest cost of the chosen plan above the best one, over the hypotheses still above the floor, seconds; infinite
+    where the chosen plan may fail or nothing is flown though something might have been."""
+    text: str
+    """The same in one plain sentence."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class GapAccount:
+    """For one gap: asked or not, and why, in figures."""
+
+    gap_id: str
+    description: str
+    kind: str
+    asked: bool
+    relevant: bool
+    """Whether any best plan depends on it."""
+    why: str
+    """One plain sentence with the figures that decided."""
+    cost_if_favourable_s: float | None = None
+    """Cost of the best plan if the gap has its best value (for obstacle gaps: passable), seconds."""
+    cost_if_unfavourable_s: float | None = None
+    """Cost of the best plan if it has its worst, seconds; None where none exists."""
+    divergence_m: float | None = None
+    """Distance between those two paths, metres."""
+    entropy_bits: float = 0.0
+    """Of the gap's own belief."""
+    gain_bits: float = 0.0
+    """Of the best single-gap cut about it, at the time of the first deliberation."""
+    regret_saved_s: float = 0.0
+    """Expected seconds that knowing it saves, at the time of the first deliberation."""

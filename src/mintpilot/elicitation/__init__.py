@@ -1,0 +1,1 @@
+"""The tree into the best cut, and its words."""

@@ -1,0 +1,1 @@
+"""Operators: the terminal, and a script that knows the truth."""

@@ -1,0 +1,1 @@
+"""Instructions into tasks, free answers into replies; language models behind one port."""

@@ -1,0 +1,1 @@
+"""Objects and depth into the semantic map; expert knowledge into a new map."""

@@ -1,0 +1,1 @@
+"""The loop, whole, on one page; mission files."""

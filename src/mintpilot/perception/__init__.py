@@ -1,0 +1,1 @@
+"""RGB-D frames into detected objects with attributes."""

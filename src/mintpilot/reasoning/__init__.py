@@ -1,0 +1,1 @@
+"""Gaps into the tree; metrics, belief, pruning, explanation."""

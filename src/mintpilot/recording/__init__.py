@@ -1,0 +1,1 @@
+"""Events into the run folder: the record, the report, the pictures."""

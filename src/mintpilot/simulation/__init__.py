@@ -1,0 +1,1 @@
+"""Worlds to fly in: scenes, scenarios, the kinematic and the MuJoCo simulator."""

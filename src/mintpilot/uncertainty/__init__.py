@@ -1,0 +1,1 @@
+"""Map and instruction into knowledge gaps."""
