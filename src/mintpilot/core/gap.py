@@ -123,8 +123,8 @@ class Assumptions:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Belief:
-    """Joint distribution over the gaps' values: one axis per gap, in the order of ``gaps``."""
+class Joint:
+    """Joint distribution over the values of a few gaps: one axis per gap, in the order of ``gaps``."""
 
     gaps: tuple[KnowledgeGap, ...]
     """Sorted by id, so that the order in the input never matters."""
@@ -133,10 +133,10 @@ class Belief:
 
     def __post_init__(self) -> None:
         if tuple(g.id for g in self.gaps) != tuple(sorted({g.id for g in self.gaps})):
-            raise MissionError("the gaps of a belief must be sorted by id, none twice")
+            raise MissionError("the gaps of a joint distribution must be sorted by id, none twice")
         if self.probability.shape != tuple(len(g.values) for g in self.gaps):
             raise MissionError(
-                f"a belief of shape {self.probability.shape} over gaps with {[len(g.values) for g in self.gaps]} values"
+                f"a joint distribution of shape {self.probability.shape} over gaps with {[len(g.values) for g in self.gaps]} values"
             )
         frozen(self.probability)
 
@@ -157,3 +157,45 @@ class Belief:
     def probability_of(self, gap_id: str, value: str) -> float:
         """Probability of one value of that gap."""
         return float(self.marginal(gap_id)[self.gaps[self.axis(gap_id)].values.index(value)])
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Belief:
+    """What is believed of all open gaps: independent factors, each a joint distribution over a few gaps.
+
+    Thirty independent gaps are thirty small factors, not one tensor of 2^30 cells. Correlation groups, and answers that
+    speak of several gaps at once, join the factors that they couple.
+    """
+
+    factors: tuple[Joint, ...]
+    """No gap is in two of them; sorted by the id of their first gap. Each has at least one gap."""
+
+    def __post_init__(self) -> None:
+        if any(not f.gaps for f in self.factors):
+            raise MissionError("a factor of a belief needs at least one gap")
+        ids = [g.id for f in self.factors for g in f.gaps]
+        if len(set(ids)) != len(ids):
+            raise MissionError("a gap of a belief may be in one factor only")
+        firsts = [f.gaps[0].id for f in self.factors]
+        if firsts != sorted(firsts):
+            raise MissionError("the factors of a belief must be sorted by the id of their first gap")
+
+    @property
+    def gaps(self) -> tuple[KnowledgeGap, ...]:
+        """All gaps, sorted by id, so that the order in the input never matters."""
+        return tuple(sorted((g for f in self.factors for g in f.gaps), key=lambda g: g.id))
+
+    def factor(self, gap_id: str) -> Joint:
+        """The factor that holds that gap. Raises `KeyError` for an unknown one."""
+        for factor in self.factors:
+            if any(g.id == gap_id for g in factor.gaps):
+                return factor
+        raise KeyError(gap_id)
+
+    def marginal(self, gap_id: str) -> Floats:
+        """Probability of each value of that gap, shape (n,). Raises `KeyError` for an unknown one."""
+        return self.factor(gap_id).marginal(gap_id)
+
+    def probability_of(self, gap_id: str, value: str) -> float:
+        """Probability of one value of that gap. Raises `KeyError` for an unknown one."""
+        return self.factor(gap_id).probability_of(gap_id, value)

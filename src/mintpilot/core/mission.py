@@ -40,6 +40,8 @@ class AskingSettings:
     """Joint hypotheses below this probability are not planned for."""
     question_price_s: float = 0.0
     """What a question costs the person, in seconds of flight; only objectives that weigh it use it."""
+    failure_price_s: float = 600.0
+    """What a failed mission counts for, in seconds of flight, where expected losses are weighed."""
     max_questions: int = 20
     """Budget of questions."""
     patience_s: float = 30.0
@@ -62,7 +64,15 @@ class AskingSettings:
                 f"asking answer_error = {self.answer_error}: must be at least 0 and below 0.5; "
                 "answers that are wrong half the time tell nothing"
             )
-        for name in ("delta_c_s", "delta_d_m", "goal_entropy_bits", "question_price_s", "patience_s", "max_questions"):
+        for name in (
+            "delta_c_s",
+            "delta_d_m",
+            "goal_entropy_bits",
+            "question_price_s",
+            "failure_price_s",
+            "patience_s",
+            "max_questions",
+        ):
             if not getattr(self, name) >= 0:
                 raise MissionError(f"asking {name} = {getattr(self, name)}: must not be below 0")
         for name in ("max_nodes", "max_joint"):

@@ -6,8 +6,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 
+import numpy as np
+
 from mintpilot.core.errors import MissionError
-from mintpilot.core.gap import KnowledgeGap
+from mintpilot.core.gap import Joint, KnowledgeGap
+from mintpilot.core.geometry import Bools
 
 
 class SayingKind(StrEnum):
@@ -81,6 +84,21 @@ class Query:
         """The true answer under a joint hypothesis (gap id → value)."""
         truths = (x.holds(assignment) for x in self.literals)
         return all(truths) if self.combine is Combine.ALL else any(truths)
+
+    def truths(self, joint: Joint) -> Bools:
+        """The true answer under each joint hypothesis, in the shape of ``joint.probability``.
+
+        Raises `KeyError` when the query speaks of a gap that ``joint`` does not hold.
+        """
+        every = self.combine is Combine.ALL
+        table: Bools = np.full(joint.probability.shape, every)
+        for literal in self.literals:
+            axis = joint.axis(literal.gap)
+            shape = [1] * table.ndim
+            shape[axis] = -1
+            true = np.array([v in literal.values for v in joint.gaps[axis].values]).reshape(shape)
+            table = table & true if every else table | true
+        return table
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import StrEnum
 
-from mintpilot.core.gap import Assumptions, Belief
+from mintpilot.core.gap import Assumptions, Joint
 from mintpilot.core.geometry import Ints, frozen
 from mintpilot.core.plan import Plan
 from mintpilot.core.query import Query
@@ -64,12 +64,14 @@ class Mint:
     """The tree with its leaves sorted into plan classes."""
 
     root: Node
-    belief: Belief
-    """What the tree was built for. Its axes are the gaps that some plan can depend on; others are irrelevant."""
+    belief: Joint
+    """What the tree was built for. Its axes are the gaps that the tree branches on; the others, whatever they turn out
+    to be, change no plan by more than the tolerances."""
     classes: tuple[PlanClass, ...]
     """Sorted by falling probability, then by cost."""
     class_of: Ints
-    """Index into ``classes`` for each joint hypothesis; the shape of ``belief.probability``."""
+    """Index into ``classes`` for each joint hypothesis; the shape of ``belief.probability``; -1 for those that were
+    left out of the tree because they are impossible or below the floor."""
     nodes: int
     """Number of nodes."""
     not_expanded: int = 0
