@@ -136,7 +136,7 @@ class Joint:
             raise MissionError("the gaps of a joint distribution must be sorted by id, none twice")
         if self.probability.shape != tuple(len(g.values) for g in self.gaps):
             raise MissionError(
-                f"a joint distribution of shape {self.probability.shape} over gaps with {[len(g.values) for g in self.gaps]} values"
+                f"a joint of shape {self.probability.shape} over gaps with {[len(g.values) for g in self.gaps]} values"
             )
         frozen(self.probability)
 
