@@ -1,0 +1,163 @@
+"""From what was gathered over frames to the nouns of the map, with stable ids and carried-over knowledge."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mintpilot.core.geometry import Box, GridFrame, Vec3
+from mintpilot.core.observation import RegionKind
+from mintpilot.core.semantic_map import Cell, Knowledge, MapObject, Region, Room, SemanticMap
+from mintpilot.mapping.identity import Names, match
+from mintpilot.mapping.objects import Track, closeness
+from mintpilot.mapping.rooms import same_door, viewpoint_of
+from mintpilot.mapping.settings import MappingSettings
+from mintpilot.mapping.smoke import Cloud, cells_in
+from mintpilot.mapping.wording import describe_all
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Draft:
+    """A map in the making."""
+
+    frame: GridFrame
+    cells: NDArray[np.uint8]
+    """(nz, ny, nx), values of `Cell`; may still change."""
+    volume: Box
+    settings: MappingSettings
+    names: Names
+    previous: SemanticMap | None
+    """What was known before."""
+    hull_m: float
+    """Radius and margin of the vehicle."""
+
+
+def fused_objects(tracks: Sequence[Track], draft: Draft) -> tuple[MapObject, ...]:
+    """Objects seen often or surely enough, doors left out; ids from the previous map by nearness."""
+    settings = draft.settings
+    kept = [
+        t
+        for t in tracks
+        if t.label != "door" and (len(t.frames) >= 2 or t.score >= settings.sure_score) and not _roofed(t, draft)
+    ]
+    old = draft.previous.objects if draft.previous is not None else ()
+    pairs = match([[closeness(t.box_m, o.box_m) if t.label == o.label else 0.0 for o in old] for t in kept])
+    for thing in old:
+        draft.names.seen(thing.id)
+    objects = [
+        t.as_object(old[pairs[i]].id if i in pairs else draft.names.new(t.label)) for i, t in enumerate(kept)
+    ]
+    backed = set(pairs.values())
+    objects += [o for j, o in enumerate(old) if j not in backed and not _gone(o, tracks, draft)]
+    return tuple(sorted(objects, key=lambda o: _order(o.id)))
+
+
+def fused_regions(clouds: Sequence[Cloud], draft: Draft, prior_passable: float) -> tuple[Region, ...]:
+    """One region per cloud, and every other region of the previous map unchanged.
+
+    A cloud takes over the answer of the region that it overlaps. Where it overlaps several (two clouds turned out to be one), it is
+    passable only if all of them are, and not passable as soon as one is not.
+    """
+    old = list(draft.previous.regions) if draft.previous is not None else []
+    for region in old:
+        draft.names.seen(region.id)
+    masks = [cells_in(draft.frame, c.box_m) for c in clouds]
+    smokes = [r for r in old if r.kind is RegionKind.SMOKE]
+    shared = [[float(m.reshape(-1)[r.cells].sum()) for r in smokes] for m in masks]
+    pairs = match(shared)
+    descriptions = describe_all(draft.volume, ["the grey smoke"] * len(clouds), [c.box_m.centre_m for c in clouds])
+    solid = draft.cells == Cell.OCCUPIED
+    inside = cells_in(draft.frame, draft.volume)
+    result: list[Region] = []
+    for i, (cloud, mask) in enumerate(zip(clouds, masks, strict=True)):
+        mine = smokes[pairs[i]] if i in pairs else None
+        answers = {r.passable for r, n in zip(smokes, shared[i], strict=True) if n > 0}
+        result.append(
+            Region(
+                id=mine.id if mine else draft.names.new("smoke"),
+                kind=RegionKind.SMOKE,
+                cells=np.flatnonzero(mask & inside & ~solid).astype(np.int64),
+                passable=_joint(answers),
+                prior_passable=mine.prior_passable if mine else prior_passable,
+                description=descriptions[i],
+                best_view=cloud.best_view or (mine.best_view if mine else None),
+            )
+        )
+    # A region of old that no cloud touches any more is kept: nobody has said that it is gone.
+    touched = {r.id for j, r in enumerate(smokes) if any(row[j] > 0 for row in shared)}
+    result += [r for r in old if r.id not in touched]
+    return tuple(sorted(result, key=lambda r: _order(r.id)))
+
+
+def fused_rooms(tracks: Sequence[Track], draft: Draft, prior_occupied: float) -> tuple[Room, ...]:
+    """One room per closed door, with the answer and the search of the previous map; rooms of old stay."""
+    doors = [
+        t
+        for t in tracks
+        if t.label == "door" and (len(t.frames) >= 2 or t.score >= draft.settings.sure_score)
+    ]
+    old = draft.previous.rooms if draft.previous is not None else ()
+    for room in old:
+        draft.names.seen(room.id)
+    pairs = match([[same_door(t.box_m, r.door_m) for r in old] for t in doors])
+    names = [f"the closed room with the {_colour(t)}door" for t in doors]
+    descriptions = describe_all(draft.volume, names, [t.box_m.centre_m for t in doors])
+    result = []
+    for i, door in enumerate(doors):
+        mine = old[pairs[i]] if i in pairs else None
+        viewpoint: Vec3 = viewpoint_of(door, draft.frame, draft.cells, draft.hull_m, draft.settings)
+        room = Room(
+            id=mine.id if mine else draft.names.new("room"),
+            door_m=door.box_m,
+            viewpoint_m=viewpoint,
+            prior_occupied=prior_occupied,
+            description=descriptions[i],
+            best_view=door.best_view,
+        )
+        if mine is not None:
+            room = replace(
+                room, occupied=mine.occupied, searched=mine.searched, prior_occupied=mine.prior_occupied
+            )
+        result.append(room)
+    backed = set(pairs.values())
+    result += [r for j, r in enumerate(old) if j not in backed]
+    return tuple(sorted(result, key=lambda r: _order(r.id)))
+
+
+def _joint(answers: set[Knowledge]) -> Knowledge:
+    if Knowledge.NO in answers:
+        return Knowledge.NO
+    return Knowledge.YES if answers == {Knowledge.YES} else Knowledge.OPEN
+
+
+def _order(identity: str) -> tuple[str, int]:
+    kind, _, number = identity.rpartition("-")
+    return (kind, int(number)) if number.isdigit() else (identity, 0)
+
+
+def _colour(track: Track) -> str:
+    return next((f"{a.value} " for a in track.attributes if a.name == "colour"), "")
+
+
+def _roofed(track: Track, draft: Draft) -> bool:
+    """True for goods on a shelf or fragments of a rack: something solid is right above most of the thing."""
+    if track.label != "box":
+        return False
+    box = track.box_m
+    lo = (box.lo_m[0], box.lo_m[1], box.hi_m[2] + 1.5 * draft.frame.resolution_m)
+    above = Box(lo_m=lo, hi_m=(box.hi_m[0], box.hi_m[1], max(lo[2], box.hi_m[2] + 1.2)))
+    column = cells_in(draft.frame, above)
+    if not column.any():
+        return False
+    return float((draft.cells[column] == Cell.OCCUPIED).mean()) > 0.2
+
+
+def _gone(thing: MapObject, tracks: Sequence[Track], draft: Draft) -> bool:
+    """True when a thing of old was absorbed by a track, or its place is now seen free."""
+    if any(t.label == thing.label and closeness(t.box_m, thing.box_m) > 0 for t in tracks):
+        return True
+    inside = draft.cells[cells_in(draft.frame, thing.box_m)]
+    return inside.size > 0 and float((inside == Cell.FREE).mean()) > 0.9

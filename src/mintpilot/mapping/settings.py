@@ -1,0 +1,49 @@
+"""What can be tuned about mapping. Defaults suit a room of some tens of metres and voxels of about 0.2 m."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from mintpilot.core.errors import MapError
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MappingSettings:
+    """Sensor model of the voxels, and thresholds of fusing detections over frames."""
+
+    max_rays: int = 20_000
+    """Pixels are thinned evenly until no more than this many rays are cast for one frame."""
+    min_range_m: float = 0.15
+    """Depth below this is the vehicle itself or noise, and teaches nothing."""
+    max_range_m: float = 12.0
+    """Depth above this is too coarse to place a surface: the ray only clears space, up to here."""
+    hit: float = 0.9
+    """Log-odds added to a voxel in which a ray ended (at most once a frame)."""
+    miss: float = 0.4
+    """Log-odds taken from a voxel that was looked through (at most once a frame)."""
+    clamp: float = 4.0
+    """Log-odds never leave ± this, so that a changed world is learnt again."""
+    occupied_above: float = 0.2
+    """Log-odds above which a voxel is occupied."""
+    free_below: float = -0.3
+    """Log-odds below which a voxel is free; between the two it is unknown."""
+    sure_score: float = 0.9
+    """An object seen once only is kept from this score on."""
+    smoke_margin_m: float = 0.3
+    """A cloud is this much larger than its visible front: its thin edge is seen through."""
+    smoke_gap_m: float = 0.8
+    """Smoke points further apart than this belong to different clouds."""
+    min_smoke_m: float = 0.6
+    """A cloud with no horizontal edge this long is noise."""
+    viewpoint_m: float = 1.2
+    """Distance of a room's viewpoint from its door."""
+    viewpoint_height_m: float = 1.3
+    """Height of a room's viewpoint above the floor."""
+
+    def __post_init__(self) -> None:
+        if not self.free_below < self.occupied_above:
+            raise MapError(f"free_below {self.free_below} must be below occupied_above {self.occupied_above}")
+        if self.max_rays < 1 or not 0 <= self.min_range_m < self.max_range_m:
+            raise MapError(
+                f"max_rays {self.max_rays} must be at least 1, and ranges {self.min_range_m} to {self.max_range_m} m in order"
+            )

@@ -1,0 +1,119 @@
+"""Clouds: smoke points of many frames into regions that cover the whole of each cloud, the unseen inside too."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage
+
+from mintpilot.core.geometry import Bools, Box, Floats, GridFrame, Ints
+from mintpilot.core.observation import Detection
+from mintpilot.mapping.settings import MappingSettings
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Cloud:
+    """One cloud as far as it is known."""
+
+    box_m: Box
+    """Conservative extent."""
+    best_view: tuple[int, int, int, int, int] | None
+
+
+class Clouds:
+    """Smoke seen so far, voxel by voxel."""
+
+    def __init__(self, frame: GridFrame) -> None:
+        self._frame = frame
+        self.seen: NDArray[np.int32] = np.zeros(frame.shape, np.int32)
+        """(nz, ny, nx) number of frames that showed smoke in a voxel."""
+        self._views: list[tuple[Floats, tuple[int, int, int, int, int], float]] = []
+
+    def add(self, detections: tuple[Detection, ...]) -> NDArray[np.uint8]:
+        """Counts the smoke of one frame and returns where it is: (nz, ny, nx) uint8, one voxel wider than the points."""
+        mask = np.zeros(self._frame.shape, np.uint8)
+        for detection in detections:
+            if detection.label != "smoke" or detection.points_m is None or not len(detection.points_m):
+                continue
+            cells = self._frame.cells_of(detection.points_m)
+            z, y, x = cells[self._frame.contains(cells)].T
+            mask[z, y, x] = 1
+            left, top, right, bottom = detection.pixels
+            view = (detection.frame_index, left, top, right, bottom)
+            area = float(max(0, right - left) * max(0, bottom - top))
+            self._views.append((np.median(detection.points_m, axis=0), view, area))
+        if not mask.any():
+            return mask
+        self.seen += mask
+        return np.asarray(ndimage.maximum_filter(mask, size=3), np.uint8)
+
+    def clouds(self, volume: Box, settings: MappingSettings) -> list[Cloud]:
+        """The clouds known so far, from west to east.
+
+        Each is the upright box around its visible front, with a margin for the thin edge that the sensor looks
+        through, drawn to the floor and to the roof where it comes near them. A box, because the inside of a cloud
+        is never seen: whatever lies between two fronts belongs to it.
+        """
+        mask = self.seen >= 2
+        if not mask.any():
+            return []
+        reach = 2 * max(1, round(settings.smoke_gap_m / self._frame.resolution_m / 2)) + 1
+        labels, count = ndimage.label(ndimage.maximum_filter(mask.astype(np.uint8), size=reach))
+        clouds = []
+        for number in range(1, count + 1):
+            cells = np.argwhere(mask & (labels == number))
+            if (box := self._extent(cells, volume, settings)) is not None:
+                clouds.append(Cloud(box_m=box, best_view=self._best_view(box)))
+        return sorted(_merged(clouds), key=lambda c: c.box_m.lo_m)
+
+    def _extent(self, cells: Ints, volume: Box, settings: MappingSettings) -> Box | None:
+        if len(cells) < 8:
+            return None
+        centres = self._frame.centres_of(cells)
+        half = self._frame.resolution_m / 2
+        # The outermost half percent are stray returns.
+        lo = np.percentile(centres, 0.5, axis=0) - half
+        hi = np.percentile(centres, 99.5, axis=0) + half
+        if max(hi[:2] - lo[:2]) < settings.min_smoke_m:
+            return None
+        lo, hi = lo - settings.smoke_margin_m, hi + settings.smoke_margin_m
+        near = 0.8  # nobody can fly in a gap thinner than this, and fronts near floor and roof are seen worst
+        lo[2] = volume.lo_m[2] if lo[2] < volume.lo_m[2] + near else lo[2]
+        hi[2] = volume.hi_m[2] if hi[2] > volume.hi_m[2] - near else hi[2]
+        lo = np.clip(lo, volume.lo_m, volume.hi_m)
+        hi = np.clip(hi, volume.lo_m, volume.hi_m)
+        return Box(lo_m=(float(lo[0]), float(lo[1]), float(lo[2])), hi_m=(float(hi[0]), float(hi[1]), float(hi[2])))
+
+    def _best_view(self, box: Box) -> tuple[int, int, int, int, int] | None:
+        inside = [(area, view) for point, view, area in self._views if bool(box.contains(point)[0])]
+        return max(inside)[1] if inside else None
+
+
+def cells_in(frame: GridFrame, box: Box) -> Bools:
+    """Which cells (nz, ny, nx) have their centre in the box."""
+    inside = np.ones(frame.shape, bool)
+    for axis, cell_axis in ((0, 2), (1, 1), (2, 0)):
+        n = frame.shape[cell_axis]
+        centres = frame.origin_m[axis] + (np.arange(n) + 0.5) * frame.resolution_m
+        line = (centres >= box.lo_m[axis]) & (centres <= box.hi_m[axis])
+        inside &= line.reshape([-1 if a == cell_axis else 1 for a in range(3)])
+    return inside
+
+
+def _merged(clouds: list[Cloud]) -> list[Cloud]:
+    """Clouds whose boxes overlap are one: a region is passable or not as a whole."""
+    result: list[Cloud] = []
+    for cloud in clouds:
+        for other in [o for o in result if _overlap(o.box_m, cloud.box_m)]:
+            result.remove(other)
+            lo = np.minimum(cloud.box_m.lo_m, other.box_m.lo_m).tolist()
+            hi = np.maximum(cloud.box_m.hi_m, other.box_m.hi_m).tolist()
+            cloud = Cloud(box_m=Box(lo_m=tuple(lo), hi_m=tuple(hi)), best_view=other.best_view or cloud.best_view)
+        result.append(cloud)
+    return result if len(result) == len(clouds) else _merged(result)
+
+
+def _overlap(a: Box, b: Box) -> bool:
+    return all(a.lo_m[i] < b.hi_m[i] and b.lo_m[i] < a.hi_m[i] for i in range(3))
