@@ -1,0 +1,66 @@
+"""One table of names: which class a name in a mission file, an option or a strategy list means.
+
+Our own entries are ``module:attribute`` strings, loaded when they are asked for. Anybody's package adds its own through
+the entry-point group ``mintpilot.<port>``, e.g. ``[project.entry-points."mintpilot.strategy"]``.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from importlib.metadata import EntryPoint, entry_points
+from types import MappingProxyType
+from typing import Final
+
+from mintpilot.core.errors import InputError, UnknownNameError
+
+BUILT_IN: Final = MappingProxyType(
+    {
+        "strategy": MappingProxyType(
+            {
+                "mint": "mintpilot.strategies.mint:MintStrategy",
+            }
+        ),
+        "objective": MappingProxyType({}),
+        "metric": MappingProxyType({}),
+        "planner": MappingProxyType({}),
+        "perception": MappingProxyType({}),
+    }
+)
+"""Port → name → where it is. Every entry is called without arguments to make a part."""
+
+
+def names(port: str) -> tuple[str, ...]:
+    """All names of that port, ours and those of installed plug-ins, sorted."""
+    return tuple(sorted({*BUILT_IN[port], *(e.name for e in _plug_ins(port))}))
+
+
+def load(port: str, name: str) -> type:
+    """The class (or factory) with that name.
+
+    Raises:
+        UnknownNameError: nobody registered it; the nearest known name is given.
+        InputError: a plug-in is registered but cannot be imported.
+    """
+    if name in BUILT_IN[port]:
+        module, _, attribute = BUILT_IN[port][name].partition(":")
+        found: type = getattr(import_module(module), attribute)
+        return found
+    for entry in _plug_ins(port):
+        if entry.name == name:
+            return _load_plug_in(port, entry)
+    raise UnknownNameError(port, name, names(port))
+
+
+def _plug_ins(port: str) -> tuple[EntryPoint, ...]:
+    return tuple(entry_points(group=f"mintpilot.{port}"))
+
+
+def _load_plug_in(port: str, entry: EntryPoint) -> type:
+    try:
+        found: type = entry.load()
+    except Exception as error:  # a stranger's package may fail in any way; the user must learn whose it is
+        raise InputError(
+            f"{port} '{entry.name}' of the installed package '{entry.dist.name if entry.dist else '?'}' cannot be "
+            f"loaded from '{entry.value}': {error!r}. Mend or uninstall that package."
+        ) from error
+    return found

@@ -1,0 +1,97 @@
+"""How a mission sees: something that turns the present view into a newer map."""
+
+from __future__ import annotations
+
+import time
+from typing import Protocol
+
+from mintpilot.core.events import FrameSeen, Timed
+from mintpilot.core.geometry import Floats, Vec3
+from mintpilot.core.ports import Camera, Perception, Recorder
+from mintpilot.core.semantic_map import SemanticMap
+from mintpilot.mapping.builder import MapBuilder
+
+
+class Eyes(Protocol):
+    """Keeps the map up to date. Called on the ground, at the camera's rate in flight, and at every stop."""
+
+    def look(self, previous: SemanticMap | None) -> SemanticMap:
+        """The map after the present view; knowledge and names are carried over from ``previous``."""
+        ...
+
+    def flown(self, points_m: Floats, radius_m: float) -> None:
+        """The vehicle has been at these points (n, 3) without touching anything: they are free."""
+        ...
+
+
+class CameraEyes:
+    """Picture → detections → voxels."""
+
+    def __init__(self, *, camera: Camera, perception: Perception, builder: MapBuilder, recorder: Recorder) -> None:
+        self._camera = camera
+        self._perception = perception
+        self._builder = builder
+        self._recorder = recorder
+        self._count = 0
+
+    def glance(self) -> None:
+        """Takes in the present view without drawing up a map of it: cheaper than `look`."""
+        frame = self._camera.capture()
+        begun = time.perf_counter()
+        detections = self._perception.detect(frame, self._count)
+        seen = time.perf_counter()
+        self._builder.integrate(frame, detections)
+        self._recorder.record(FrameSeen(index=self._count, frame=frame, detections=detections))
+        self._recorder.record(Timed(stage="perception", seconds=seen - begun))
+        self._recorder.record(Timed(stage="mapping", seconds=time.perf_counter() - seen))
+        self._count += 1
+
+    def look(self, previous: SemanticMap | None) -> SemanticMap:
+        """See `Eyes.look`."""
+        self.glance()
+        return self.redraw(previous)
+
+    def redraw(self, previous: SemanticMap | None) -> SemanticMap:
+        """The map of all that was taken in so far."""
+        begun = time.perf_counter()
+        newer = self._builder.snapshot(previous)
+        self._recorder.record(Timed(stage="mapping", seconds=time.perf_counter() - begun))
+        return newer
+
+    def flown(self, points_m: Floats, radius_m: float) -> None:
+        """See `Eyes.flown`."""
+        self._builder.mark_flown(points_m, radius_m)
+
+
+class FixedEyes:
+    """For a map that was given and does not change."""
+
+    def __init__(self, given: SemanticMap) -> None:
+        self._given = given
+
+    def look(self, previous: SemanticMap | None) -> SemanticMap:
+        """See `Eyes.look`."""
+        return self._given if previous is None else previous
+
+    def flown(self, points_m: Floats, radius_m: float) -> None:
+        """See `Eyes.flown`; a given map learns nothing from it."""
+
+
+def stations(volume_lo: Vec3, volume_hi: Vec3, *, height_m: float, spacing_m: float) -> list[Vec3]:
+    """Places to look around from: a lattice over the volume at one height, walked in serpentines.
+
+    Args:
+        volume_lo: lowest corner of the volume, metres.
+        volume_hi: highest corner, metres.
+        height_m: height of the stations above the volume's floor, metres.
+        spacing_m: wished distance between neighbours, metres; the lattice is stretched to fill the volume evenly.
+    """
+    counts = [max(1, round((volume_hi[i] - volume_lo[i]) / spacing_m)) for i in (0, 1)]
+    steps = [(volume_hi[i] - volume_lo[i]) / counts[i] for i in (0, 1)]
+    xs = [volume_lo[0] + (i + 0.5) * steps[0] for i in range(counts[0])]
+    ys = [volume_lo[1] + (j + 0.5) * steps[1] for j in range(counts[1])]
+    z = volume_lo[2] + height_m
+    places: list[Vec3] = []
+    for row, y in enumerate(ys):
+        places += [(x, y, z) for x in (xs if row % 2 == 0 else reversed(xs))]
+    return places

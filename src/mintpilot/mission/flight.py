@@ -1,0 +1,165 @@
+"""Flying a plan, leg by leg, each checked against the map right before it is flown."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass, field
+from enum import StrEnum
+
+import numpy as np
+
+from mintpilot.core.errors import InfeasibleError
+from mintpilot.core.events import LegFlown, MapUpdated, Noticed, Timed
+from mintpilot.core.geometry import Floats, Vec3
+from mintpilot.core.plan import Leg, Plan, VehicleLimits
+from mintpilot.core.ports import Recorder, Vehicle, Watch
+from mintpilot.core.semantic_map import Knowledge, SemanticMap
+from mintpilot.core.task import Action
+from mintpilot.core.trajectory import FlightEnd, Trajectory, VehicleState
+from mintpilot.mission.eyes import Eyes
+from mintpilot.planning.checks import check_path, check_trajectory
+from mintpilot.planning.trajectory import plan_trajectory
+
+class End(StrEnum):
+    """How flying a plan ended."""
+
+    DONE = "done"
+    """Every stop was fulfilled."""
+    NEWS = "news"
+    """Something new was seen that bears on the way or opens a gap: think again from here."""
+    REFUSED = "refused"
+    """The way is not known to be passable, or no trajectory within the limits exists: nothing of it was flown."""
+    FAILED = "failed"
+    """The vehicle cannot go on."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Progress:
+    """What came of flying."""
+
+    end: End
+    map: SemanticMap
+    finished: frozenset[str]
+    reason: str = ""
+
+
+@dataclass(slots=True, kw_only=True)
+class Pilot:
+    """Flies plans with one vehicle. Holds no knowledge of its own besides the newest map."""
+
+    vehicle: Vehicle
+    eyes: Eyes
+    recorder: Recorder
+    limits: VehicleLimits
+    map: SemanticMap
+    watch_map: bool = True
+    """False where the map is given and nothing can be seen."""
+    _news: str = field(default="", init=False)
+
+    def fly(self, plan: Plan, *, phase: str = "mission", pretend_passable: frozenset[str] = frozenset()) -> Progress:
+        """Flies the legs of a plan in order.
+
+        Args:
+            plan: what to fly, from where the vehicle is.
+            phase: name for the record.
+            pretend_passable: ids of regions that a deliberately unsafe baseline flies through; empty for all others.
+
+        Raises:
+            DeviceError: the vehicle's link is gone.
+        """
+        finished: frozenset[str] = frozenset()
+        for index, leg in enumerate(plan.legs):
+            believed = _pretend(self.map, pretend_passable)
+            begun = time.perf_counter()
+            trajectory = self._prepare(leg, believed)
+            self.recorder.record(Timed(stage="planning", seconds=time.perf_counter() - begun))
+            if isinstance(trajectory, str):
+                return Progress(end=End.REFUSED, map=self.map, finished=finished, reason=trajectory)
+            rest = [x.path_m for x in plan.legs[index:]]
+            watch = self._watch(rest, pretend_passable) if self.watch_map else None
+            self._news = ""
+            log = self.vehicle.follow(trajectory, watch)
+            self.recorder.record(LegFlown(phase=phase, stop_id=leg.stop.id, trajectory=trajectory, log=log))
+            self.eyes.flown(log.position_m, self.limits.radius_m)
+            if log.end is FlightEnd.FAILED:
+                return Progress(end=End.FAILED, map=self.map, finished=finished, reason=log.reason)
+            if log.end is FlightEnd.INTERRUPTED:
+                return Progress(end=End.NEWS, map=self.map, finished=finished, reason=self._news)
+            self._fulfil(leg)
+            finished |= {leg.stop.id}
+        return Progress(end=End.DONE, map=self.map, finished=finished)
+
+    def _prepare(self, leg: Leg, believed: SemanticMap) -> Trajectory | str:
+        """The checked trajectory of a leg, or why there is none."""
+        here = self.vehicle.state()
+        path = np.vstack([np.asarray(here.position_m, float), leg.path_m[1:]])
+        try:
+            refusal = check_path(path, believed, self.limits)
+            if refusal:
+                return refusal
+            trajectory = plan_trajectory(
+                path,
+                map=believed,
+                limits=self.limits,
+                start_yaw_rad=here.yaw_rad,
+                end_yaw_rad=_facing(leg, self.map, path[-1]),
+            )
+        except InfeasibleError as error:
+            return str(error)
+        return check_trajectory(trajectory, believed, self.limits) or trajectory
+
+    def _fulfil(self, leg: Leg) -> None:
+        self.vehicle.act(leg.stop, leg.stop.dwell_s)
+        self.map = self.eyes.look(self.map)
+        if leg.stop.action is Action.LOOK:
+            self.map = self.map.with_room(_room_of(leg), searched=True)
+            self.recorder.record(MapUpdated(map=self.map, why=f"looked into {_room_of(leg)}"))
+
+    def _watch(self, rest: list[Floats], pretend_passable: frozenset[str]) -> Watch:
+        """Looks at the world in flight; asks for a stop when the way ahead is lost or something new is uncertain."""
+        known = {r.id for r in self.map.regions} | {r.id for r in self.map.rooms}
+        way = np.vstack(rest)
+
+        def watch(state: VehicleState) -> bool:
+            self.map = self.eyes.look(self.map)
+            new = [r for r in (*self.map.regions, *self.map.rooms) if r.id not in known]
+            ahead = _ahead(way, state.position_m)
+            lost = check_path(ahead, _pretend(self.map, pretend_passable), self.limits) if len(ahead) else ""
+            if lost:
+                self._news = f"the way ahead is not known to be free any more: {lost}"
+            elif new:
+                self._news = f"something new and uncertain: {new[0].description or new[0].id}"
+            else:
+                return False
+            self.recorder.record(Noticed(kind="news", text=self._news))
+            return True
+
+        return watch
+
+
+def _pretend(believed: SemanticMap, passable: frozenset[str]) -> SemanticMap:
+    for region in passable:
+        believed = believed.with_region(region, Knowledge.YES)
+    return believed
+
+
+def _ahead(way: Floats, position_m: Vec3) -> Floats:
+    """The part of the way that is still to come: from the nearest way-point on."""
+    distances = np.linalg.norm(way - np.asarray(position_m), axis=1)
+    nearest = int(np.argmin(distances))
+    return way[nearest + 1 :]
+
+
+def _room_of(leg: Leg) -> str:
+    return leg.site.label
+
+
+def _facing(leg: Leg, believed: SemanticMap, end_m: Floats) -> float | None:
+    """Heading at the stop: towards the door or the thing it is about; None to keep the heading of the flight."""
+    target = leg.site.position_m
+    if leg.stop.action is Action.LOOK:
+        doors = [room.door_m.centre_m for room in believed.rooms if room.id == _room_of(leg)]
+        target = doors[0] if doors else target
+    offset = np.asarray(target[:2]) - end_m[:2]
+    return float(np.arctan2(offset[1], offset[0])) if float(np.linalg.norm(offset)) > 0.3 else None
+
