@@ -36,7 +36,7 @@ class Solid:
     colour: str = ""
     """Plain colour word; empty: the usual look of its kind."""
     attributes: tuple[Attribute, ...] = ()
-    """True attributes besides colour, size and shape (for scoring and scripted operators), e.g. ``contents: medicine``."""
+    """True attributes besides colour, size and shape (for scoring), e.g. ``contents: medicine``."""
     appears_s: float = 0.0
     """When it comes into the world, seconds of mission flight (something falls over); 0: from the start."""
 

@@ -1,0 +1,272 @@
+"""Smoke and flames, marched as volumes over a picture and its metric depth (Beer-Lambert).
+
+Along each ray the cloud absorbs what is behind it and scatters some light of its own; light from a fire tints it.
+An active depth sensor gets its return from inside the cloud, where the optical depth passes
+`SENSOR_TAU`, as in real smoke. The look of a cloud does not depend on whether it is toxic.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+
+import numba as nb
+import numpy as np
+from numpy.typing import NDArray
+
+from mintpilot.core.geometry import Box, Floats, Vec3
+from mintpilot.simulation.scene import Scene
+
+SMOKE_EXTINCTION_PER_M = 2.4
+"""At the mean density; 2 m of cloud let about 3 % of the light through."""
+FLAME_EXTINCTION_PER_M = 9.0
+SENSOR_TAU = 1.0
+"""Optical depth from which the depth sensor gets its return."""
+EDGE_M = 0.3
+"""A cloud thins out over this distance from its sides; it reaches floor and roof."""
+STEPS = 28
+_NOISE_CELLS = 64
+_Grid = NDArray[np.float32]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Volume:
+    """One cloud or one fire, ready for marching."""
+
+    box: Box
+    flame: bool
+    glow_m: Vec3
+    """Where the light that tints it comes from."""
+    glow: float
+    """Strength of that light, 0 for none."""
+    offset: float
+    """Shift into the noise, so that no two volumes look alike."""
+
+
+def volumes_of(scene: Scene) -> tuple[Volume, ...]:
+    """The clouds and flames of a scene; each cloud is tinted by the nearest fire."""
+    fires = [s for s in scene.solids if s.kind == "fire"]
+    volumes = []
+    for index, smoke in enumerate(scene.smokes):
+        centre = np.asarray(smoke.extent_m.centre_m)
+        near = min(fires, key=lambda f: float(np.linalg.norm(f.extent_m.centre_m - centre)), default=None)
+        glow_m = near.extent_m.centre_m if near else smoke.extent_m.centre_m
+        offset = 7.3 * index + 1.7 * (scene.seed % 97)
+        volumes.append(Volume(box=smoke.extent_m, flame=False, glow_m=glow_m, glow=1.0 if near else 0.0, offset=offset))
+    for index, fire in enumerate(fires):
+        offset = 3.1 * index + 0.9 * (scene.seed % 89)
+        volumes.append(Volume(box=fire.extent_m, flame=True, glow_m=fire.extent_m.centre_m, glow=0.0, offset=offset))
+    return tuple(volumes)
+
+
+@cache
+def _noise() -> _Grid:
+    """Periodic cloud density (64, 64, 64), mean about 0.6, never below 0."""
+    n = _NOISE_CELLS
+    k = np.fft.fftfreq(n) * n
+    radius = np.sqrt(k[:, None, None] ** 2 + k[None, :, None] ** 2 + k[None, None, :] ** 2)
+    radius[0, 0, 0] = 1.0
+    field = np.fft.fftn(np.random.default_rng(0).standard_normal((n, n, n))) * radius**-1.7
+    field[0, 0, 0] = 0.0
+    value = np.real(np.fft.ifftn(field))
+    density: _Grid = np.clip(0.6 + 0.4 * value / value.std(), 0.0, 2.0).astype(np.float32)
+    return density
+
+
+@cache
+def _jitter() -> _Grid:
+    """Where in a step each ray of a 32 x 32 tile samples: hides the steps."""
+    return np.random.default_rng(1).random((32, 32)).astype(np.float32)
+
+
+def march(
+    rgb: NDArray[np.uint8],
+    depth_m: NDArray[np.float32],
+    sensed_m: NDArray[np.float32],
+    volume: Volume,
+    *,
+    world_from_camera: Floats,
+    focal_px: float,
+    time_s: float,
+) -> None:
+    """Draws one volume over a picture, in place.
+
+    Args:
+        rgb: colours (height, width, 3).
+        depth_m: true distance of the surface behind, along the optical axis (height, width).
+        sensed_m: what the depth sensor would return so far (height, width); lowered where the cloud returns earlier.
+        volume: what to draw.
+        world_from_camera: pose of the optical frame (4, 4).
+        focal_px: focal length, pixels; the principal point is the middle of the picture.
+        time_s: drives the drift of smoke and the flicker of flames.
+    """
+    kernel = _march_flame if volume.flame else _march_smoke
+    pose = np.ascontiguousarray(world_from_camera, dtype=np.float64)
+    kernel(
+        rgb,
+        depth_m,
+        sensed_m,
+        pose,
+        focal_px,
+        np.asarray(volume.box.lo_m, float),
+        np.asarray(volume.box.hi_m, float),
+        np.asarray(volume.glow_m, float),
+        volume.glow,
+        volume.offset,
+        time_s,
+        _noise(),
+        _jitter(),
+    )
+
+
+@nb.njit(fastmath=True, cache=True)
+def _density(noise: _Grid, x: float, y: float, z: float) -> float:
+    """Trilinear sample of the periodic noise; x, y, z in its cells."""
+    n = noise.shape[0]
+    fx, fy, fz = np.floor(x), np.floor(y), np.floor(z)
+    ax, ay, az = x - fx, y - fy, z - fz
+    i0, j0, k0 = int(fx) % n, int(fy) % n, int(fz) % n
+    i1, j1, k1 = (i0 + 1) % n, (j0 + 1) % n, (k0 + 1) % n
+    c00 = noise[i0, j0, k0] * (1 - ax) + noise[i1, j0, k0] * ax
+    c10 = noise[i0, j1, k0] * (1 - ax) + noise[i1, j1, k0] * ax
+    c01 = noise[i0, j0, k1] * (1 - ax) + noise[i1, j0, k1] * ax
+    c11 = noise[i0, j1, k1] * (1 - ax) + noise[i1, j1, k1] * ax
+    value: float = (c00 * (1 - ay) + c10 * ay) * (1 - az) + (c01 * (1 - ay) + c11 * ay) * az
+    return value
+
+
+@nb.njit(fastmath=True, cache=True)
+def _span(pose: Floats, d: Floats, lo: Floats, hi: Floats, far: float) -> tuple[float, float]:
+    """Part of a ray inside a box, in units of depth along the axis; empty when the second is not above the first."""
+    near = 0.02
+    for a in range(3):
+        if abs(d[a]) < 1e-9:
+            if pose[a, 3] < lo[a] or pose[a, 3] > hi[a]:
+                return 1.0, 0.0
+            continue
+        ta, tb = (lo[a] - pose[a, 3]) / d[a], (hi[a] - pose[a, 3]) / d[a]
+        if ta > tb:
+            ta, tb = tb, ta
+        near, far = max(near, ta), min(far, tb)
+    return near, far
+
+
+@nb.njit(fastmath=True, cache=True)
+def _march_smoke(
+    rgb: NDArray[np.uint8],
+    depth: _Grid,
+    sensed: _Grid,
+    pose: Floats,
+    focal: float,
+    lo: Floats,
+    hi: Floats,
+    glow_m: Floats,
+    glow: float,
+    offset: float,
+    time: float,
+    noise: _Grid,
+    jitter: _Grid,
+) -> None:
+    height, width = depth.shape
+    d = np.empty(3)
+    for v in range(height):
+        for u in range(width):
+            cx, cy = (u + 0.5 - width / 2) / focal, (v + 0.5 - height / 2) / focal
+            for a in range(3):
+                d[a] = pose[a, 0] * cx + pose[a, 1] * cy + pose[a, 2]
+            near, far = _span(pose, d, lo, hi, depth[v, u])
+            if far <= near:
+                continue
+            step = (far - near) / STEPS
+            metres = step * np.sqrt(d[0] ** 2 + d[1] ** 2 + d[2] ** 2)
+            clear, tau, hit = 1.0, 0.0, -1.0
+            r, g, b = 0.0, 0.0, 0.0
+            for s in range(STEPS):
+                t = near + (s + jitter[v & 31, u & 31]) * step
+                x, y, z = pose[0, 3] + d[0] * t, pose[1, 3] + d[1] * t, pose[2, 3] + d[2] * t
+                edge = min(min(x - lo[0], hi[0] - x), min(y - lo[1], hi[1] - y)) / EDGE_M
+                if edge <= 0.0:
+                    continue
+                low, high = (z - lo[2]) / (hi[2] - lo[2]), 0.0
+                fine = _density(noise, (x + 0.12 * time) * 7 + offset, (y + 0.05 * time) * 7, (z - 0.35 * time) * 7)
+                wide = _density(noise, x * 2.3 + offset, y * 2.3 + 0.1 * time, (z - 0.2 * time) * 2.3)
+                thick = SMOKE_EXTINCTION_PER_M * (0.35 + 0.5 * fine + 0.6 * wide) * min(1.0, edge) * (0.75 + 0.4 * low)
+                opaque = 1.0 - np.exp(-thick * metres)
+                if glow > 0.0:
+                    away = (x - glow_m[0]) ** 2 + (y - glow_m[1]) ** 2 + (z - glow_m[2]) ** 2
+                    high = glow / (1.0 + 1.1 * away)
+                shade = (0.72 + 0.28 * low) * (0.8 + 0.25 * wide)
+                r += clear * opaque * (112.0 * shade + 330.0 * high)
+                g += clear * opaque * (110.0 * shade + 150.0 * high)
+                b += clear * opaque * (107.0 * shade + 40.0 * high)
+                clear *= 1.0 - opaque
+                tau += thick * metres
+                if hit < 0.0 and tau > SENSOR_TAU:
+                    hit = t
+                if clear < 0.01:
+                    break
+            rgb[v, u, 0] = np.uint8(min(255.0, rgb[v, u, 0] * clear + r))
+            rgb[v, u, 1] = np.uint8(min(255.0, rgb[v, u, 1] * clear + g))
+            rgb[v, u, 2] = np.uint8(min(255.0, rgb[v, u, 2] * clear + b))
+            if hit > 0.0 and (hit < sensed[v, u] or np.isnan(sensed[v, u])):
+                sensed[v, u] = hit
+
+
+@nb.njit(fastmath=True, cache=True)
+def _march_flame(
+    rgb: NDArray[np.uint8],
+    depth: _Grid,
+    sensed: _Grid,
+    pose: Floats,
+    focal: float,
+    lo: Floats,
+    hi: Floats,
+    glow_m: Floats,
+    glow: float,  # noqa: ARG001  (both kernels are called alike)
+    offset: float,
+    time: float,
+    noise: _Grid,
+    jitter: _Grid,
+) -> None:
+    height, width = depth.shape
+    d = np.empty(3)
+    rise = hi[2] - lo[2]
+    for v in range(height):
+        for u in range(width):
+            cx, cy = (u + 0.5 - width / 2) / focal, (v + 0.5 - height / 2) / focal
+            for a in range(3):
+                d[a] = pose[a, 0] * cx + pose[a, 1] * cy + pose[a, 2]
+            near, far = _span(pose, d, lo, hi, depth[v, u])
+            if far <= near:
+                continue
+            step = (far - near) / STEPS
+            metres = step * np.sqrt(d[0] ** 2 + d[1] ** 2 + d[2] ** 2)
+            clear, tau, hit = 1.0, 0.0, -1.0
+            r, g, b = 0.0, 0.0, 0.0
+            for s in range(STEPS):
+                t = near + (s + jitter[v & 31, u & 31]) * step
+                x, y, z = pose[0, 3] + d[0] * t, pose[1, 3] + d[1] * t, pose[2, 3] + d[2] * t
+                h = (z - lo[2]) / rise
+                sway = (_density(noise, offset, y * 3, z * 4 - 5.0 * time) - 0.6) * 0.5 * h
+                ex = 2 * (x + sway - glow_m[0]) / (hi[0] - lo[0])
+                ey = 2 * (y + sway - glow_m[1]) / (hi[1] - lo[1])
+                tongue = _density(noise, x * 6 + offset, y * 6, (z - 2.6 * time) * 3)
+                fine = _density(noise, x * 15 + offset, y * 15, (z - 3.4 * time) * 8)
+                heat = 1.25 - 0.85 * (ex * ex + ey * ey) - 1.15 * h + 0.75 * (tongue - 0.6) + 0.35 * (fine - 0.6)
+                if heat <= 0.0:
+                    continue
+                opaque = 1.0 - np.exp(-FLAME_EXTINCTION_PER_M * min(1.0, 1.6 * heat) * metres)
+                r += clear * opaque * 255.0
+                g += clear * opaque * min(245.0, 45.0 + 215.0 * heat)
+                b += clear * opaque * min(190.0, max(6.0, 190.0 * (heat - 0.75)))
+                clear *= 1.0 - opaque
+                tau += FLAME_EXTINCTION_PER_M * min(1.0, 1.6 * heat) * metres
+                if hit < 0.0 and tau > SENSOR_TAU:
+                    hit = t
+                if clear < 0.01:
+                    break
+            rgb[v, u, 0] = np.uint8(min(255.0, rgb[v, u, 0] * clear + r))
+            rgb[v, u, 1] = np.uint8(min(255.0, rgb[v, u, 1] * clear + g))
+            rgb[v, u, 2] = np.uint8(min(255.0, rgb[v, u, 2] * clear + b))
+            if hit > 0.0 and (hit < sensed[v, u] or np.isnan(sensed[v, u])):
+                sensed[v, u] = hit
