@@ -74,7 +74,9 @@ def _octile(path: Path, data: bytes) -> NDArray[np.uint8]:
     strange = ~blocked & ~np.isin(terrain, list(FREE_TERRAIN))
     if strange.any():
         y, x = np.argwhere(strange)[0]
-        raise MapError(f"'{path}' line {y + 5}, column {x + 1}: terrain {chr(terrain[y, x])!r} is none of . G S @ O T W")
+        raise MapError(
+            f"'{path}' line {y + 5}, column {x + 1}: terrain {chr(terrain[y, x])!r} is none of . G S @ O T W"
+        )
     return np.where(blocked, np.uint8(Cell.OCCUPIED), np.uint8(Cell.FREE))
 
 
@@ -93,7 +95,9 @@ def _voxels(path: Path, data: bytes) -> NDArray[np.uint8]:
     except (ValueError, OverflowError):
         raise MapError(f"'{path}': each line after the first must be three whole numbers, x y z") from None
     if numbers.size % 3:
-        raise MapError(f"'{path}' holds {numbers.size} numbers, not three for each voxel; it is truncated, copy it again")
+        raise MapError(
+            f"'{path}' holds {numbers.size} numbers, not three for each voxel; it is truncated, copy it again"
+        )
     blocked = numbers.reshape(-1, 3)
     outside = np.flatnonzero(((blocked < 0) | (blocked >= (nx, ny, nz))).any(axis=1))
     if outside.size:

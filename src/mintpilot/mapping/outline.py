@@ -105,7 +105,9 @@ def _mask_on_map(frame: GridFrame, path: Path) -> NDArray[np.bool_]:
         grey, opaque = read_picture(path)
         if grey.shape != (ny, nx):
             rows, columns = grey.shape
-            raise MapError(f"mask '{path}' is {columns} x {rows} pixels, the map {nx} x {ny}; give one of the same size")
+            raise MapError(
+                f"mask '{path}' is {columns} x {rows} pixels, the map {nx} x {ny}; give one of the same size"
+            )
         return np.asarray((grey < 0.5) & opaque)
     header = read_ros_header(path)
     if not np.isclose(header.resolution_m, frame.resolution_m, rtol=1e-6):

@@ -1,0 +1,126 @@
+"""Reads a mission file and finds every mistake in it.
+
+In three steps, each only when the one before found nothing: the YAML, the form (`mintpilot.mission.schema`), and what
+only the whole file and its map can tell (`mintpilot.mission.reader_sense`).
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from pydantic import ValidationError
+
+from mintpilot.core.errors import MissionError
+from mintpilot.mission.reader_form import FormWords
+from mintpilot.mission.reader_sense import contradictions
+from mintpilot.mission.reader_yaml import Document, Fault, Path_, read_document
+from mintpilot.mission.schema import MissionFile
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Problem:
+    """One mistake in a mission file."""
+
+    file: str
+    """The file as it was named."""
+    line: int
+    """Line in it, from 1."""
+    path: str
+    """Where in the mission, e.g. ``world.regions[0].prior_passable``; empty for the file as a whole."""
+    message: str
+    """The offending value, the rule that it breaks, and what to write instead."""
+
+    @property
+    def place(self) -> str:
+        """``FILE:LINE (path.to.key)``."""
+        return f"{self.file}:{self.line}" + (f" ({self.path})" if self.path else "")
+
+    def __str__(self) -> str:
+        return f"{self.place}: {self.message}"
+
+
+class MissionFileError(MissionError):
+    """A mission file with mistakes.
+
+    Attributes:
+        problems: all of them, in the order of the file.
+    """
+
+    def __init__(self, problems: Sequence[Problem]) -> None:
+        lines = "\n".join(f"  {problem}" for problem in problems)
+        count = f"{len(problems)} mistakes" if len(problems) > 1 else "1 mistake"
+        super().__init__(f"{count} in {problems[0].file}:\n{lines}")
+        self.place = problems[0].place
+        self.problems = tuple(problems)
+
+
+def read_mission(path: str | Path) -> MissionFile:
+    """The mission in that file.
+
+    Raises:
+        MissionFileError: the file cannot be read or has mistakes; all of them are in the message and in ``problems``.
+    """
+    mission, problems = _read(Path(path))
+    if mission is None or problems:
+        raise MissionFileError(problems)
+    return mission
+
+
+def find_problems(path: str | Path) -> list[Problem]:
+    """Every mistake in that mission file, in the order of its lines; empty when it is sound."""
+    return _read(Path(path))[1]
+
+
+def json_schema() -> str:
+    """The published JSON Schema of mission files, as text."""
+    head = {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": "MintPilot mission file, version 1",
+    }
+    return json.dumps({**MissionFile.model_json_schema(), **head}, indent=2, ensure_ascii=False) + "\n"
+
+
+def path_text(path: Path_) -> str:
+    """``("regions", 0, "id")`` as ``regions[0].id``."""
+    return "".join(f"[{step}]" if isinstance(step, int) else f".{step}" for step in path).lstrip(".")
+
+
+def _read(path: Path) -> tuple[MissionFile | None, list[Problem]]:
+    document = read_document(path)
+    mission, faults = None, document.faults
+    if not faults:
+        mission, faults = _formed(document)
+    if mission is not None:
+        faults = list(contradictions(mission, path.parent))
+    return mission, _placed(faults, document, path)
+
+
+def _formed(document: Document) -> tuple[MissionFile | None, list[Fault]]:
+    if not isinstance(document.value, dict):
+        message = "a mission is a mapping of keys to values; begin with 'mintpilot: 1'"
+        return None, [Fault(path=(), line=1, message=message)]
+    if "mintpilot" not in document.value:
+        message = "'mintpilot' is missing; begin the file with 'mintpilot: 1', the version of its schema"
+        return None, [Fault(path=(), line=1, message=message)]
+    try:
+        return MissionFile.model_validate(document.value), []
+    except ValidationError as error:
+        words = FormWords(document.value)
+        found = error.errors(include_url=False)
+        return None, [Fault(path=words.path(e["loc"]), line=None, message=words.message(e)) for e in found]
+
+
+def _placed(faults: Sequence[Fault], document: Document, path: Path) -> list[Problem]:
+    problems = [
+        Problem(
+            file=str(path),
+            line=fault.line or document.line_of(fault.path),
+            path=path_text(fault.path),
+            message=fault.message,
+        )
+        for fault in faults
+    ]
+    return sorted(problems, key=lambda problem: (problem.line, problem.path))

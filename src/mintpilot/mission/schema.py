@@ -1,0 +1,188 @@
+"""The mission file, version 1 (YAML). Its first key is ``mintpilot: 1``.
+
+The models check the form; `mintpilot.mission.reader` adds what only the whole file, and the map it names, can tell.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from mintpilot.mission.schema_base import (
+    Attributes,
+    Name,
+    NotNegative,
+    Place,
+    Positive,
+    Probability,
+    Several,
+    Spec,
+    Words,
+)
+from mintpilot.mission.schema_world import World
+
+SCHEMA_VERSION = 1
+
+
+class VehicleSpec(Spec):
+    """What the vehicle can do."""
+
+    radius_m: Positive = 0.3
+    """No part of the vehicle is further from its centre, metres."""
+    margin_m: NotNegative = 0.1
+    """Clearance kept besides the radius, metres."""
+    cruise_mps: Positive = 1.5
+    """Speed on straight legs, metres per second."""
+    max_acceleration_mps2: Positive = 2.0
+    """Of any commanded motion, metres per second squared."""
+    endurance_s: Positive | None = None
+    """Flight time for the mission, seconds; default: unlimited."""
+
+
+BelowOne = Annotated[float, Field(ge=0, lt=1)]
+Count = Annotated[int, Field(ge=1)]
+
+
+class AskingSpec(Spec):
+    """Thresholds and bounds of reasoning and asking."""
+
+    rule: Literal["paper", "regret"] = "regret"
+    """Which differences make a gap critical: cost or divergence (`paper`), or cost alone (`regret`)."""
+    delta_c_s: NotNegative = 2.0
+    """Cost difference that is worth a question, seconds."""
+    delta_d_m: NotNegative = 2.0
+    """Divergence that is worth a question under the paper's rule, metres."""
+    goal_entropy_bits: NotNegative = 0.3
+    """A target gap with more entropy than this is critical, bits."""
+    alpha: BelowOne = 0.05
+    """Stop asking when one plan class holds at least 1 - alpha."""
+    alpha_safe: BelowOne = 0.01
+    """A region counts as passable from a posterior of 1 - alpha_safe on, after an explicit yes."""
+    answer_error: Annotated[float, Field(ge=0, lt=0.5)] = 0.0
+    """Probability that an answer is the opposite of the truth, as the drone believes."""
+    floor: BelowOne = 1e-6
+    """Joint hypotheses below this probability are not planned for."""
+    question_price_s: NotNegative = 0.0
+    """What a question costs the person, in seconds of flight."""
+    max_questions: Annotated[int, Field(ge=0)] = 20
+    """Budget of questions."""
+    patience_s: NotNegative = 30.0
+    """How long an answer is waited for, seconds."""
+    objective: Name = "information-gain"
+    """Name of the query objective."""
+    max_nodes: Count = 4096
+    """Bound on the tree's nodes."""
+    max_joint: Count = 65536
+    """Bound on the joint hypotheses held."""
+    impact_metric: Name = "frechet"
+    """Name of the distance between paths."""
+
+
+class SurveySpec(Spec):
+    """The flight that makes the map, for worlds that have none yet."""
+
+    height_m: Positive = 3.25
+    """Above ground, metres: above the racks, below the roof."""
+    spacing_m: Positive = 4.0
+    """Between neighbouring lanes, metres."""
+    frame_every_s: Positive = 0.5
+    """Time between pictures, seconds."""
+    speed_mps: Positive = 2.0
+    """Along the lanes, metres per second."""
+    resolution_m: Positive = 0.2
+    """Edge of a voxel of the map that is made, metres."""
+
+
+class PriorsSpec(Spec):
+    """What is believed of things that name no prior of their own."""
+
+    passable: Probability = 0.5
+    """That a region is passable."""
+    occupied: Probability = 0.5
+    """That somebody is in a closed room."""
+
+
+class GoalSpec(Spec):
+    """One step. Give where it is as exactly one of `phrase`, `object`, `room` and `position_m`."""
+
+    action: Literal["go", "pick", "deliver", "look"]
+    """What is done there."""
+    phrase: Words | None = None
+    """Words that mean a thing, e.g. `the box`. Several things may fit: that is a knowledge gap."""
+    label: Name | None = None
+    """With a phrase: what the thing must be, e.g. `box`."""
+    attributes: Attributes = Field(default_factory=dict)
+    """With a phrase: what the thing must have, e.g. `{colour: red}`."""
+    object: Name | None = None
+    """Id of one object of the world."""
+    room: Name | None = None
+    """Id of one room of the world: its viewpoint."""
+    position_m: Place | None = None
+    """A fixed place."""
+    dwell_s: NotNegative = 2.0
+    """How long the drone stays there, seconds."""
+    truth: Name | None = None
+    """With a phrase: id of the object that is really meant, for a scripted operator; never used to plan."""
+
+
+class CombinationSpec(Spec):
+    """One combination of values with its probability."""
+
+    values: Several[Words]
+    """One value for each gap, in the group's order: `passable`/`blocked`, `present`/`absent`, or an object's id."""
+    probability: Probability
+    """Of all of them together."""
+
+
+class CorrelationSpec(Spec):
+    """Gaps whose priors do not multiply, e.g. two clouds from one fire."""
+
+    gaps: Annotated[Several[Words], Field(min_length=2)]
+    """Ids of gaps: `obstacle:REGION`, `presence:ROOM`."""
+    joint: Annotated[Several[CombinationSpec], Field(min_length=1)]
+    """Probability of each combination; those not named have none. They sum to 1."""
+
+
+class OperatorSpec(Spec):
+    """How a scripted operator behaves."""
+
+    answer_error: Probability = 0.0
+    """Probability of answering the opposite of the truth."""
+    unsure: Probability = 0.0
+    """Probability of answering that it does not know."""
+    silence: Probability = 0.0
+    """Probability of not answering."""
+    latency_s: NotNegative = 0.0
+    """Time taken for an answer, seconds, on the mission's clock."""
+
+
+class MissionFile(Spec):
+    """A mission: what is to be done, where, by which vehicle, with which tolerances."""
+
+    mintpilot: Literal[1]
+    """Version of this schema; must be 1."""
+    name: Name
+    """Short name of the mission, used for its run folder."""
+    instruction: Words
+    """What is to be done, in plain words."""
+    world: World
+    """Where: a `scenario` by name, an explicit `scene`, or a `map` of your own."""
+    goals: Annotated[Several[GoalSpec], Field(min_length=1)] | None = None
+    """The steps, in order. Without them they are taken from the instruction."""
+    seeks_people: bool | None = None
+    """True when everybody who is hurt must be found. Default: as the instruction says."""
+    vehicle: VehicleSpec = VehicleSpec()
+    """What the vehicle can do."""
+    asking: AskingSpec = AskingSpec()
+    """When to ask, and when to stop."""
+    survey: SurveySpec | None = None
+    """The flight that makes the map; not for worlds given as a map."""
+    priors: PriorsSpec = PriorsSpec()
+    """For regions and rooms that name none."""
+    correlations: Several[CorrelationSpec] = ()
+    """Gaps whose priors do not multiply."""
+    operator: OperatorSpec = OperatorSpec()
+    """How a scripted operator behaves."""
+    truth: dict[str, str] = Field(default_factory=dict)
+    """What a scripted operator knows: id of a region or room, or a phrase, to its true value."""

@@ -1,0 +1,85 @@
+"""The bricks of the mission file's schema: strict models and bounded numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Annotated, Any, TypeAlias, TypeVar
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSchema
+
+from mintpilot.core.geometry import Box, Vec3
+from mintpilot.core.observation import Attribute
+
+
+class Spec(BaseModel):
+    """A part of a mission file: unknown keys are refused, numbers are finite, nothing is converted silently."""
+
+    model_config = ConfigDict(
+        extra="forbid", strict=True, frozen=True, allow_inf_nan=False, use_attribute_docstrings=True, title=None
+    )
+
+
+def _as_tuple(value: Any) -> Any:
+    """YAML has lists only; a strict tuple wants a tuple."""
+    return tuple(value) if isinstance(value, list) else value
+
+
+def _as_values(value: Any) -> Any:
+    """One word, or a list of words."""
+    return (value,) if isinstance(value, str) else _as_tuple(value)
+
+
+T = TypeVar("T")
+Several: TypeAlias = Annotated[tuple[T, ...], BeforeValidator(_as_tuple)]
+"""A list in the file."""
+Probability: TypeAlias = Annotated[float, Field(ge=0, le=1)]
+Positive: TypeAlias = Annotated[float, Field(gt=0)]
+NotNegative: TypeAlias = Annotated[float, Field(ge=0)]
+Name: TypeAlias = Annotated[str, Field(min_length=1, max_length=100, pattern=r"^[A-Za-z0-9][A-Za-z0-9_.-]*$")]
+"""Letters, digits, ``-``, ``_`` and ``.``: safe in file names, reports and answers."""
+Words: TypeAlias = Annotated[str, Field(min_length=1, max_length=1000)]
+Point3: TypeAlias = Annotated[tuple[float, float, float], BeforeValidator(_as_tuple)]
+"""``[x, y, z]`` in metres."""
+Point2: TypeAlias = Annotated[tuple[float, float], BeforeValidator(_as_tuple)]
+"""``[x, y]`` in metres."""
+Place: TypeAlias = Annotated[tuple[float, ...], BeforeValidator(_as_tuple), Field(min_length=2, max_length=3)]
+"""``[x, y]`` or ``[x, y, z]`` in metres; without z on a flat map: at the height of its layer."""
+Values: TypeAlias = Annotated[
+    tuple[Annotated[str, Field(min_length=1)], ...],
+    BeforeValidator(_as_values),
+    Field(min_length=1),
+    WithJsonSchema(
+        {
+            "anyOf": [
+                {"type": "string", "minLength": 1},
+                {"type": "array", "items": {"type": "string", "minLength": 1}, "minItems": 1},
+            ]
+        }
+    ),
+]
+"""One word or a list of words."""
+Attributes: TypeAlias = dict[Name, Values]
+"""What can be said of a thing: ``{colour: red, size: small}``."""
+
+
+class BoxSpec(Spec):
+    """An axis-aligned box."""
+
+    lo_m: Point3
+    """Lowest corner [x, y, z], metres."""
+    hi_m: Point3
+    """Highest corner [x, y, z], metres."""
+
+    def box(self) -> Box:
+        """The box as core knows it. Raises `MapError` when a corner is on the wrong side."""
+        return Box(lo_m=self.lo_m, hi_m=self.hi_m)
+
+
+def attributes_of(attributes: Mapping[str, tuple[str, ...]]) -> tuple[Attribute, ...]:
+    """The mapping of a mission file as core attributes, in the file's order."""
+    return tuple(Attribute(name=name, value=value) for name, values in attributes.items() for value in values)
+
+
+def place_of(place: tuple[float, ...], layer_m: float) -> Vec3:
+    """A place with its height; one given as ``[x, y]`` lies at ``layer_m``."""
+    return (place[0], place[1], place[2] if len(place) == 3 else layer_m)

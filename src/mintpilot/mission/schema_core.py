@@ -1,0 +1,104 @@
+"""From the parts of a mission file to core's nouns."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+from mintpilot.core.gap import CorrelationGroup
+from mintpilot.core.geometry import Box, Vec3
+from mintpilot.core.mission import AskingSettings, CriticalityRule, Mission, SurveySettings
+from mintpilot.core.plan import VehicleLimits
+from mintpilot.core.task import Action, Reference, SubGoal, Task
+from mintpilot.mission.schema import GoalSpec, MissionFile
+from mintpilot.mission.schema_base import attributes_of, place_of
+from mintpilot.mission.schema_world import MapWorld
+
+
+def mission_of(file: MissionFile, *, start_m: Vec3, volume: Box) -> Mission:
+    """The mission, free of file formats. Start and volume are the world's."""
+    survey = file.survey.model_dump() if file.survey else {}
+    resolution = {"resolution_m": survey.pop("resolution_m")} if survey else {}
+    return Mission(
+        name=file.name,
+        instruction=file.instruction,
+        start_m=start_m,
+        volume=volume,
+        limits=limits_of(file),
+        asking=asking_of(file),
+        survey=None if isinstance(file.world, MapWorld) else SurveySettings(**survey),
+        prior_passable=file.priors.passable,
+        prior_occupied=file.priors.occupied,
+        **resolution,
+    )
+
+
+def limits_of(file: MissionFile) -> VehicleLimits:
+    """What the vehicle can do."""
+    values = file.vehicle.model_dump()
+    endurance = values.pop("endurance_s")
+    return VehicleLimits(**values, endurance_s=math.inf if endurance is None else endurance)
+
+
+def asking_of(file: MissionFile) -> AskingSettings:
+    """Thresholds and bounds."""
+    values = file.asking.model_dump()
+    return AskingSettings(**{**values, "rule": CriticalityRule(values["rule"])})
+
+
+def correlations_of(file: MissionFile) -> tuple[CorrelationGroup, ...]:
+    """The groups of gaps whose priors do not multiply."""
+    return tuple(
+        CorrelationGroup(gaps=tuple(group.gaps), joint=tuple((tuple(c.values), c.probability) for c in group.joint))
+        for group in file.correlations
+    )
+
+
+def task_of(file: MissionFile, *, layer_m: float = 0.0) -> Task | None:
+    """The goals as a task; None when the file gives none and they are to be taken from the instruction.
+
+    Args:
+        file: the mission file, already checked.
+        layer_m: height of places given as [x, y], metres.
+    """
+    if file.goals is None:
+        return None
+    rooms = {room.id: room for room in file.world.rooms} if isinstance(file.world, MapWorld) else {}
+    viewpoints = {name: place_of(room.viewpoint_m, layer_m) for name, room in rooms.items()}
+    words = {name: room.description for name, room in rooms.items()}
+    return Task(
+        instruction=file.instruction,
+        subgoals=tuple(
+            SubGoal(
+                action=Action(goal.action),
+                reference=_reference(goal, viewpoints, words, layer_m),
+                dwell_s=goal.dwell_s,
+            )
+            for goal in file.goals
+        ),
+        seeks_people=bool(file.seeks_people),
+    )
+
+
+def truths_of(file: MissionFile) -> dict[str, str]:
+    """What a scripted operator knows: subject of a gap (id of a region or room, or a phrase) to its true value.
+
+    A region from a mask of several areas (``NAME-1``, ``NAME-2`` …) is not listed part by part: look up ``NAME`` too.
+    """
+    truths = dict(file.truth)
+    if isinstance(file.world, MapWorld):
+        truths |= {region.id: region.truth for region in file.world.regions if region.truth is not None}
+        truths |= {room.id: room.truth for room in file.world.rooms if room.truth is not None}
+    truths |= {goal.phrase: goal.truth for goal in file.goals or () if goal.phrase and goal.truth}
+    return truths
+
+
+def _reference(goal: GoalSpec, viewpoints: Mapping[str, Vec3], words: Mapping[str, str], layer_m: float) -> Reference:
+    if goal.room is not None:
+        return Reference(phrase=words[goal.room], position_m=viewpoints[goal.room])
+    if goal.position_m is not None:
+        x, y, z = place_of(goal.position_m, layer_m)
+        return Reference(phrase=f"the place at ({x:g}, {y:g})", position_m=(x, y, z))
+    if goal.object is not None:
+        return Reference(phrase=goal.object, object_id=goal.object)
+    return Reference(phrase=goal.phrase or "", label=goal.label or "", attributes=attributes_of(goal.attributes))
