@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from mintpilot.core.geometry import Vec3
-from mintpilot.core.observation import Attribute
+from mintpilot.core.observation import Attribute, RegionKind
 
 
 class Action(StrEnum):
@@ -36,6 +36,8 @@ class Reference:
     """A fixed place instead of a thing: then nothing else counts."""
     object_id: str = ""
     """A known object of the map instead of a description."""
+    every: bool = False
+    """True when all things that match are meant (``every room on the left``), in whichever order is shortest."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -49,6 +51,15 @@ class SubGoal:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Avoidance:
+    """A kind of region that the person wants the drone to stay out of, whatever its passability."""
+
+    kind: RegionKind
+    strict: bool = True
+    """False for a wish (``skip the smoke if you can``): given up where the task cannot be done otherwise."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Task:
     """Sub-goals in the order in which they are to be reached."""
 
@@ -57,3 +68,5 @@ class Task:
     subgoals: tuple[SubGoal, ...]
     seeks_people: bool = False
     """True when everybody who is hurt must be found: closed rooms then open presence gaps."""
+    avoid: tuple[Avoidance, ...] = ()
+    """What is to be stayed out of. Regions of these kinds open no gap, so that no plan enters them."""

@@ -1,0 +1,107 @@
+"""Map and task → what is not known, and which places are to be visited (method, sections 1 and 2)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from mintpilot.core.errors import InputError
+from mintpilot.core.gap import KnowledgeGap
+from mintpilot.core.geometry import Vec3
+from mintpilot.core.plan import PlanningProblem, Stop, VehicleLimits
+from mintpilot.core.semantic_map import Knowledge, SemanticMap
+from mintpilot.core.task import Task
+from mintpilot.uncertainty.gaps import obstacle_gaps, presence_gaps
+from mintpilot.uncertainty.matching import View
+from mintpilot.uncertainty.targets import bind
+from mintpilot.uncertainty.things import things_of
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Findings:
+    """What map and task leave open, and what is to be done."""
+
+    gaps: tuple[KnowledgeGap, ...]
+    """All that is open and bears on the task, sorted by id."""
+    stops: tuple[Stop, ...]
+    """Ordered stops in order, then the optional ones, sorted by id."""
+    problems: tuple[str, ...]
+    """A plain sentence for each reference that matches nothing, with what was seen instead."""
+    wishes: tuple[str, ...] = ()
+    """Ids of open regions that are stayed out of only because the person wished so. Where nothing can be flown,
+    `find_gaps` with ``honour_wishes=False`` lets them be asked about."""
+
+
+def find_gaps(
+    map: SemanticMap,
+    task: Task,
+    *,
+    start_m: Vec3,
+    prior_passable: float = 0.5,
+    finished: frozenset[str] = frozenset(),
+    honour_wishes: bool = True,
+) -> Findings:
+    """Finds obstacle, target and presence gaps and the stops of the task.
+
+    The order of objects, regions and rooms in the map does not matter, and ids stay the same when unrelated things are
+    added.
+
+    Args:
+        map: what is believed of the world.
+        task: what is to be done.
+        start_m: where the drone is, metres; ``nearest`` and ``left`` are judged from there, looking towards the middle
+            of the map.
+        prior_passable: for regions that keep the default prior of `Region`.
+        finished: ids of stops already fulfilled; they are left out, and gaps that only they depended on too.
+        honour_wishes: False gives up avoidances that are not strict.
+    """
+    things = things_of(map)
+    view = View(start_m=start_m, towards_m=map.frame.box.centre_m)
+    bound = bind(task, things, view, finished=finished)
+    avoided = {a.kind for a in task.avoid if a.strict or honour_wishes}
+    wished = avoided - {a.kind for a in task.avoid if a.strict}
+    gaps = [*bound.gaps.values(), *obstacle_gaps(map, things, prior_passable=prior_passable, leave_out=avoided)]
+    stops = list(bound.stops)
+    if task.seeks_people:
+        looked_at = {site.label for stop in stops if not stop.gap for site in stop.sites}
+        more_gaps, more_stops = presence_gaps(map, things, finished=finished, looked_at=looked_at)
+        gaps += more_gaps
+        stops += more_stops
+    return Findings(
+        gaps=tuple(sorted(gaps, key=lambda gap: gap.id)),
+        stops=tuple(_on_layer(stop, map) for stop in stops),
+        problems=tuple(dict.fromkeys(bound.problems)),
+        wishes=tuple(sorted(r.id for r in map.regions if r.kind in wished and r.passable is Knowledge.OPEN)),
+    )
+
+
+def frame_problem(
+    map: SemanticMap,
+    task: Task,
+    findings: Findings,
+    *,
+    start_m: Vec3,
+    limits: VehicleLimits,
+    finished: frozenset[str] = frozenset(),
+) -> PlanningProblem:
+    """Puts map, findings and vehicle into the form that a planner takes.
+
+    Raises:
+        InputError: nothing of the task can be done, since its phrases match nothing that was seen.
+    """
+    if not findings.stops and findings.problems and not finished:
+        raise InputError(
+            f"nothing of '{task.instruction}' can be done: {' '.join(findings.problems)} "
+            "Name something that was seen, or look at more of the place first."
+        )
+    return PlanningProblem(
+        map=map, start_m=start_m, stops=findings.stops, gaps=findings.gaps, limits=limits, finished=finished
+    )
+
+
+def _on_layer(stop: Stop, map: SemanticMap) -> Stop:
+    """In a flat map every place is at the height of its one layer."""
+    if not map.frame.is_flat:
+        return stop
+    z_m = map.frame.box.centre_m[2]
+    sites = tuple(replace(s, position_m=(s.position_m[0], s.position_m[1], z_m)) for s in stop.sites)
+    return replace(stop, sites=sites)

@@ -1,0 +1,98 @@
+"""Gaps that the map itself opens: regions that may be passable, rooms that may hold somebody (method, section 1)."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Sequence
+from dataclasses import fields
+
+import numpy as np
+
+from mintpilot.core.gap import ABSENT, BLOCKED, PASSABLE, PRESENT, GapKind, KnowledgeGap
+from mintpilot.core.geometry import Vec3
+from mintpilot.core.observation import RegionKind
+from mintpilot.core.plan import Site, Stop
+from mintpilot.core.semantic_map import Knowledge, Region, Room, SemanticMap
+from mintpilot.core.task import Action
+from mintpilot.uncertainty.describing import place
+from mintpilot.uncertainty.things import ROOM, Thing
+
+LOOK_REACH_M = 0.5
+"""A room is looked into from within this distance of its viewpoint, metres."""
+_NO_PRIOR = next(field.default for field in fields(Region) if field.name == "prior_passable")
+
+
+def obstacle_gaps(
+    map: SemanticMap, things: Sequence[Thing], *, prior_passable: float, leave_out: Collection[RegionKind] = ()
+) -> list[KnowledgeGap]:
+    """One gap for each region whose passability is open; regions without cells, and of kinds left out, open none."""
+    return [
+        KnowledgeGap(
+            id=f"obstacle:{region.id}",
+            kind=GapKind.OBSTACLE,
+            subject=region.id,
+            description=region.description or _unnamed(f"the {region.kind}", region_middle_m(map, region), things),
+            values=(PASSABLE, BLOCKED),
+            prior=_two(prior_passable if region.prior_passable == _NO_PRIOR else region.prior_passable),
+            position_m=region_middle_m(map, region),
+        )
+        for region in map.regions
+        if region.passable is Knowledge.OPEN and region.cells.size and region.kind not in leave_out
+    ]
+
+
+def presence_gaps(
+    map: SemanticMap, things: Sequence[Thing], *, finished: Collection[str], looked_at: Collection[str]
+) -> tuple[list[KnowledgeGap], list[Stop]]:
+    """A gap and an optional stop for each room that may hold somebody and was not looked into.
+
+    A room known to be occupied has a gap with the one value `PRESENT` left: its stop is needed for certain, still at
+    whichever place in the order is shortest.
+
+    Args:
+        map: what is believed of the world.
+        things: objects and rooms of the map, for landmarks.
+        finished: ids of stops already fulfilled.
+        looked_at: ids of rooms that the ordered stops look into anyway.
+    """
+    gaps, stops = [], []
+    for room in sorted(map.rooms, key=lambda room: room.id):
+        stop = _look(room)
+        if room.searched or room.occupied is Knowledge.NO or room.id in looked_at or stop.id in finished:
+            continue
+        known = room.occupied is Knowledge.YES
+        gaps.append(
+            KnowledgeGap(
+                id=stop.gap,
+                kind=GapKind.PRESENCE,
+                subject=room.id,
+                description=room.description or _unnamed("the closed room", room.door_m.centre_m, things),
+                values=(PRESENT,) if known else (PRESENT, ABSENT),
+                prior=(1.0,) if known else _two(room.prior_occupied),
+                position_m=room.door_m.centre_m,
+            )
+        )
+        stops.append(stop)
+    return gaps, stops
+
+
+def region_middle_m(map: SemanticMap, region: Region) -> Vec3:
+    """Mean of the centres of a region's cells, metres."""
+    cells = np.stack(np.unravel_index(region.cells, map.frame.shape), axis=1)
+    x, y, z = map.frame.centres_of(cells).mean(axis=0)
+    return (float(x), float(y), float(z))
+
+
+def _look(room: Room) -> Stop:
+    site = Site(position_m=room.viewpoint_m, reach_m=LOOK_REACH_M, value=PRESENT, label=room.id)
+    return Stop(id=f"look:{room.id}", action=Action.LOOK, sites=(site,), gap=f"presence:{room.id}", optional=True)
+
+
+def _two(first: float) -> tuple[float, float]:
+    return (first, 1.0 - first)
+
+
+def _unnamed(noun: str, at_m: Vec3, things: Sequence[Thing]) -> str:
+    here = Thing(id="", label=ROOM, attributes=(), position_m=at_m, size_m=(0, 0, 0), goal_m=at_m)
+    near = sorted((t for t in things if t.label != ROOM), key=lambda t: (math.dist(t.position_m, at_m), t.id))
+    return noun + place(here, near)

@@ -1,0 +1,146 @@
+"""Sub-goals bound to things: one match is a place, several are a target gap, none is a problem to be told."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass, field
+
+from mintpilot.core.gap import Candidate, GapKind, KnowledgeGap
+from mintpilot.core.plan import Site, Stop
+from mintpilot.core.task import Action, Reference, SubGoal, Task
+from mintpilot.uncertainty.describing import describe_apart, seen
+from mintpilot.uncertainty.gaps import LOOK_REACH_M
+from mintpilot.uncertainty.matching import View, match
+from mintpilot.uncertainty.things import ROOM, Thing, middle_m, nearest_first, synonyms
+
+_REACH_M = {Action.GO: 1.5, Action.PICK: 1.2, Action.DELIVER: 1.5, Action.LOOK: 1.5}
+_POSITION_REACH_M = 0.75
+_PRONOUNS = frozenset({"it", "him", "her", "them", "there", "that", "this", "one"})
+
+
+@dataclass(slots=True, kw_only=True)
+class Binding:
+    """What the sub-goals come to, collected in order."""
+
+    things: Sequence[Thing]
+    view: View
+    finished: Collection[str]
+    """Ids of stops that are left out."""
+    stops: list[Stop] = field(default_factory=list)
+    gaps: dict[str, KnowledgeGap] = field(default_factory=dict)
+    problems: list[str] = field(default_factory=list)
+
+    def one(self, stop_id: str, subgoal: SubGoal, reference: Reference, first: int) -> None:
+        """Binds a sub-goal that means one thing; ``first`` is the number of the first one with this reference."""
+        if stop_id in self.finished:
+            return
+        if reference.position_m is not None:
+            site = Site(position_m=reference.position_m, reach_m=_POSITION_REACH_M, label=reference.phrase)
+            self.stops.append(_stop(stop_id, subgoal, (site,)))
+            return
+        found = self._found(reference)
+        if not found:
+            return
+        gap = _gap(reference, first, found, self.things, self.view) if len(found) > 1 else None
+        sites = tuple(_site(thing, subgoal.action, value=thing.id if gap else "") for thing in found)
+        self.stops.append(_stop(stop_id, subgoal, sites, gap.id if gap else ""))
+        if gap:
+            self.gaps[gap.id] = gap
+
+    def all(self, stop_id: str, subgoal: SubGoal, reference: Reference) -> None:
+        """Binds a sub-goal that means every match: one stop for each, nearest first."""
+        found = self._found(reference)
+        left = [t for t in found if not t.searched and f"{stop_id}:{t.id}" not in self.finished]
+        here_m = self.stops[-1].sites[0].position_m if self.stops else self.view.start_m
+        for thing in nearest_first(left, here_m):
+            self.stops.append(_stop(f"{stop_id}:{thing.id}", subgoal, (_site(thing, subgoal.action),)))
+
+    def _found(self, reference: Reference) -> tuple[Thing, ...]:
+        if reference.object_id:
+            return tuple(t for t in self.things if t.id == reference.object_id) or self._none(reference)
+        found = match(reference, self.things, self.view)
+        return tuple(t for t in found if not t.behind_door) or found or self._none(reference)
+
+    def _none(self, reference: Reference) -> tuple[Thing, ...]:
+        label = reference.label
+        alike = [t for t in self.things if synonyms(t.label) & synonyms(label)] if label else []
+        wanted = reference.object_id or reference.phrase
+        self.problems.append(f"Nothing on the map matches '{wanted}'. Seen was {seen(alike or self.things)}.")
+        return ()
+
+
+def bind(task: Task, things: Sequence[Thing], view: View, *, finished: Collection[str]) -> Binding:
+    """Binds each sub-goal to the things it may mean.
+
+    A stop's id is its action and its number in the task (``pick:1``), so that it stays the same when the map grows;
+    of a sub-goal that means every match there is one stop for each (``go:1:person-2``), nearest first. A pronoun means
+    what the sub-goal before it meant. The same reference used twice is one gap.
+    """
+    binding = Binding(things=things, view=view, finished=finished)
+    numbers: dict[Reference, int] = {}
+    meant: Reference | None = None
+    for number, subgoal in enumerate(task.subgoals, start=1):
+        reference = subgoal.reference
+        if reference.phrase.lower().strip() in _PRONOUNS and meant is not None and not _is_fixed(reference):
+            reference = meant
+        meant = reference
+        stop_id = f"{subgoal.action}:{number}"
+        if reference.every or _is_search(task, subgoal):
+            binding.all(stop_id, subgoal, reference)
+        else:
+            binding.one(stop_id, subgoal, reference, numbers.setdefault(reference, number))
+    return binding
+
+
+def _is_search(task: Task, subgoal: SubGoal) -> bool:
+    """Who looks for everybody goes to each person in sight: which one was meant need not be asked."""
+    fixed = _is_fixed(subgoal.reference)
+    return task.seeks_people and subgoal.action is Action.GO and not fixed and subgoal.reference.label == "person"
+
+
+def _is_fixed(reference: Reference) -> bool:
+    return reference.position_m is not None or bool(reference.object_id)
+
+
+def _gap(
+    reference: Reference, number: int, found: Sequence[Thing], things: Sequence[Thing], view: View
+) -> KnowledgeGap:
+    words = describe_apart(found, things, view.start_m)
+    return KnowledgeGap(
+        id=f"target:{number}:{_slug(reference.phrase)}",
+        kind=GapKind.TARGET,
+        subject=reference.phrase,
+        description=reference.phrase if reference.phrase.lower().startswith("the ") else f"the {reference.phrase}",
+        values=tuple(t.id for t in found),
+        prior=(1 / len(found),) * len(found),
+        position_m=middle_m(t.position_m for t in found),
+        candidates=tuple(
+            Candidate(
+                id=t.id,
+                position_m=t.position_m,
+                attributes=t.attributes,
+                size_m=t.size_m,
+                description=words[t.id],
+            )
+            for t in found
+        ),
+    )
+
+
+def _site(thing: Thing, action: Action, value: str = "") -> Site:
+    if thing.label == ROOM:
+        return Site(position_m=thing.goal_m, reach_m=LOOK_REACH_M, value=value, label=thing.id)
+    half_m = math.hypot(thing.size_m[0], thing.size_m[1]) / 2
+    reach_m = _REACH_M[action] + max(0.0, half_m - 0.5)
+    return Site(position_m=thing.goal_m, reach_m=reach_m, value=value, label=thing.id)
+
+
+def _stop(stop_id: str, subgoal: SubGoal, sites: tuple[Site, ...], gap: str = "") -> Stop:
+    return Stop(id=stop_id, action=subgoal.action, sites=sites, gap=gap, dwell_s=subgoal.dwell_s)
+
+
+def _slug(phrase: str) -> str:
+    words = re.sub(r"[^a-z0-9]+", "-", phrase.lower()).strip("-")
+    return words.removeprefix("the-") or "thing"
