@@ -95,7 +95,11 @@ def test_extremes_that_are_as_good_as_equal_are_not_chosen_among() -> None:
                 thing("b", "person", (2, 2, 0), hair_color="brown", accessories=["glasses"]),
                 thing("c", "person", (3, 3, 0), hair_color="white"),
             ],
-            ["the person with glasses and hat", "the second nearest person with glasses", "the person with white hair"],
+            [
+                "the person with glasses and hat and brown hair",
+                "the second nearest person with glasses and brown hair",
+                "the person with white hair",
+            ],
         ),
     ],
 )
