@@ -97,7 +97,7 @@ def test_extremes_that_are_as_good_as_equal_are_not_chosen_among() -> None:
             ],
             [
                 "the person with glasses and hat and brown hair",
-                "the second nearest person with glasses and brown hair",
+                "the nearest person with glasses and brown hair",
                 "the person with white hair",
             ],
         ),
