@@ -81,7 +81,7 @@ class QuerySituation:
     """(n,) plan class of each joint hypothesis, 0 to m - 1."""
     regret_s: Floats
     """(m, n) seconds lost by flying the plan of class i under hypothesis j instead of the best; the price of failure
-    where it would fail."""
+    where it would fail. For very large trees only the likeliest classes have a row."""
     yes: Bools
     """(q, n) the true answer to each candidate cut."""
     settings: AskingSettings

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import StrEnum
 
+import numpy as np
+
 from mintpilot.core.gap import Assumptions, Joint
 from mintpilot.core.geometry import Ints, frozen
 from mintpilot.core.plan import Plan
@@ -79,6 +81,12 @@ class Mint:
 
     def __post_init__(self) -> None:
         frozen(self.class_of)
+
+    @property
+    def support(self) -> Ints:
+        """Flat indices (n,), ascending, of the joint hypotheses that the tree holds and that have some probability."""
+        held: Ints = np.flatnonzero((self.class_of.ravel() >= 0) & (self.belief.probability.ravel() > 0))
+        return held
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -1,0 +1,108 @@
+"""Which cuts can be asked: a typed predicate language over the gaps that matter (method, section 4).
+
+Every cut can be said in one short sentence and is about gaps that the tree branches on. Cuts that divide the joint
+hypotheses alike are merged; the one that is easiest to say stays.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Iterator
+from itertools import combinations
+
+import numpy as np
+
+from mintpilot.core.gap import PASSABLE, PRESENT, GapKind, KnowledgeGap
+from mintpilot.core.geometry import Vec3
+from mintpilot.core.query import Combine, Literal, Query, Saying, SayingKind
+from mintpilot.core.tree import Mint
+from mintpilot.elicitation.ease import effort
+from mintpilot.elicitation.referents import referent_literals
+
+MAX_TOGETHER = 3
+"""Most gaps in one any-of or all-of cut."""
+MAX_CUTS = 2000
+"""Bound on the cuts that are looked at, easiest first."""
+MAX_CELLS = 1 << 24
+"""Bound on cuts times joint hypotheses."""
+
+
+def gap_literals(gap: KnowledgeGap, start_m: Vec3 | None = None) -> tuple[Literal, ...]:
+    """Everything that can be asked about one gap by itself, never negated: yes is the property that has a name.
+
+    Args:
+        gap: what is asked about.
+        start_m: where the drone is, metres; with it, referents can also be told apart by nearness and side.
+    """
+    if gap.kind is GapKind.TARGET:
+        return referent_literals(gap, start_m)
+    if gap.kind is GapKind.VALUE:
+        return tuple(
+            Literal(
+                gap=gap.id,
+                values=frozenset(gap.values[i:]),
+                saying=Saying(kind=SayingKind.THRESHOLD, name="at least", value=gap.values[i]),
+            )
+            for i in range(1, len(gap.values))
+        )
+    wanted = PASSABLE if gap.kind is GapKind.OBSTACLE else PRESENT
+    saying = Saying(kind=SayingKind.VALUE, value=wanted)
+    return (Literal(gap=gap.id, values=frozenset({wanted}), saying=saying),) if wanted in gap.values else ()
+
+
+def candidate_queries(
+    mint: Mint,
+    *,
+    start_m: Vec3 | None = None,
+    refused: Collection[str] = (),
+) -> tuple[Query, ...]:
+    """The cuts that divide what the tree holds, easiest to say first, then by id.
+
+    Args:
+        mint: the tree; only gaps that it branches on are asked about.
+        start_m: where the drone is, metres.
+        refused: ids of cuts not to be asked; a cut that divides the hypotheses alike is not asked in other words either.
+    """
+    support = mint.support
+    literals = {g.id: gap_literals(g, start_m) for g in mint.belief.gaps}
+    queries = sorted(set(_queries(literals, mint.belief.gaps)), key=lambda q: (effort(q), q.id))
+    most = max(1, min(MAX_CUTS, MAX_CELLS // max(1, support.size)))
+    kept: dict[bytes, Query] = {}
+    barred: set[bytes] = set()
+    for query in queries:
+        if len(kept) >= most:
+            break
+        row = query.truths(mint.belief).ravel()[support]
+        if row.all() or not row.any():
+            continue
+        # A cut and its opposite divide alike.
+        key = np.packbits(row ^ row[0]).tobytes()
+        if query.id in refused:
+            barred.add(key)
+        kept.setdefault(key, query)
+    return tuple(query for key, query in kept.items() if key not in barred)
+
+
+def _queries(literals: dict[str, tuple[Literal, ...]], gaps: Iterable[KnowledgeGap]) -> Iterator[Query]:
+    for several in literals.values():
+        yield from (Query(literals=(literal,)) for literal in several)
+    for gap in gaps:
+        if gap.kind is GapKind.TARGET:
+            yield from _pairs(literals[gap.id])
+    for kind in (GapKind.OBSTACLE, GapKind.PRESENCE):
+        same = [literals[g.id][0] for g in gaps if g.kind is kind and literals[g.id]]
+        for count in range(2, MAX_TOGETHER + 1):
+            for together in combinations(same, count):
+                yield Query(literals=together, combine=Combine.ANY)
+                yield Query(literals=together, combine=Combine.ALL)
+
+
+def _pairs(literals: tuple[Literal, ...]) -> Iterator[Query]:
+    """Two attributes of one referent, or two named referents; relations are long enough by themselves."""
+    attributes = [x for x in literals if x.saying.kind is SayingKind.ATTRIBUTE]
+    for one, other in combinations(attributes, 2):
+        yield Query(literals=(one, other), combine=Combine.ANY)
+        if one.saying.name != other.saying.name:
+            yield Query(literals=(one, other), combine=Combine.ALL)
+    named = [x for x in literals if x.saying.kind is SayingKind.VALUE]
+    for one, other in combinations(named, 2):
+        yield Query(literals=(one, other), combine=Combine.ANY)

@@ -1,0 +1,97 @@
+"""Choosing the best cut (method, section 4)."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+
+import numpy as np
+
+from mintpilot.core.geometry import Floats
+from mintpilot.core.mission import AskingSettings
+from mintpilot.core.ports import QueryObjective, QuerySituation
+from mintpilot.core.query import Query
+from mintpilot.core.tree import Mint, ScoredQuery
+from mintpilot.elicitation.ease import effort
+from mintpilot.elicitation.objectives.information_gain import class_gain_bits
+from mintpilot.elicitation.objectives.value_of_information import regret_saved_s
+
+SAME = 9
+"""Decimal places to which scores are compared: rounding must not decide what is asked."""
+
+
+def query_situation(queries: Sequence[Query], mint: Mint, regret_s: Floats, settings: AskingSettings) -> QuerySituation:
+    """What an objective may look at: the joint hypotheses of the tree, flattened, and every cut's true answers."""
+    support = mint.support
+    p = mint.belief.probability.ravel()[support]
+    yes = np.zeros((len(queries), support.size), bool)
+    for row, query in zip(yes, queries, strict=True):
+        row[:] = query.truths(mint.belief).ravel()[support]
+    return QuerySituation(
+        probability=p / p.sum(),
+        class_of=mint.class_of.ravel()[support],
+        regret_s=regret_s,
+        yes=yes,
+        settings=settings,
+    )
+
+
+def choose(
+    queries: Sequence[Query],
+    mint: Mint,
+    regret_s: Floats,
+    objective: QueryObjective,
+    settings: AskingSettings,
+    *,
+    asked: Collection[str] = (),
+    proposed_by: str = "enumeration",
+) -> tuple[ScoredQuery, ...]:
+    """The cuts with their worth, best first; ties go to the one that is easier to say, then by id.
+
+    A cut that was answered before is left out unless answers may be wrong: then asking again tells something new.
+
+    Args:
+        queries: candidate cuts over gaps on the tree's axes.
+        mint: the tree; each joint hypothesis keeps its leaf while cuts are scored.
+        regret_s: from `mintpilot.reasoning.situation.regret_matrix`.
+        objective: how worth is judged.
+        settings: answer error, price, tolerances.
+        asked: ids of cuts that were answered.
+        proposed_by: who proposed these cuts.
+
+    Raises:
+        LimitError: from the objective, when the situation is too large for it.
+    """
+    kept = [q for q in queries if settings.answer_error > 0 or q.id not in asked]
+    if not kept:
+        return ()
+    situation = query_situation(kept, mint, regret_s, settings)
+    scores = objective.scores(situation)
+    gains, saved = class_gain_bits(situation), regret_saved_s(situation)
+    error = settings.answer_error
+    yes = situation.yes @ situation.probability
+    heard = (1 - error) * yes + error * (1 - yes)
+    found = [
+        ScoredQuery(
+            query=query,
+            score=float(scores[i]),
+            gain_bits=float(gains[i]),
+            regret_saved_s=float(saved[i]),
+            yes_probability=float(heard[i]),
+            proposed_by=proposed_by,
+        )
+        for i, query in enumerate(kept)
+    ]
+    return rank(found)
+
+
+def rank(scored: Collection[ScoredQuery]) -> tuple[ScoredQuery, ...]:
+    """Best first; ties by ease of saying, then by id."""
+    return tuple(sorted(scored, key=lambda s: (-round(s.score, SAME), effort(s.query), s.query.id)))
+
+
+def merge(*lists: Collection[ScoredQuery]) -> tuple[ScoredQuery, ...]:
+    """Several ranked lists as one, e.g. enumerated and proposed cuts; of equal cuts the first stays."""
+    found: dict[str, ScoredQuery] = {}
+    for scored in (s for several in lists for s in several):
+        found.setdefault(scored.query.id, scored)
+    return rank(found.values())

@@ -1,0 +1,27 @@
+"""A yardstick: any cut that tells something, at random."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from mintpilot.core.geometry import Floats
+from mintpilot.core.ports import QueryObjective, QuerySituation
+from mintpilot.elicitation.objectives.information_gain import InformationGain
+
+
+class Random(QueryObjective):
+    """Ranks the cuts that tell something of the plan class at random.
+
+    Args:
+        rng: where the ranks come from; by default a generator with seed 0. Same generator, same questions.
+    """
+
+    def __init__(self, rng: np.random.Generator | None = None) -> None:
+        self._rng = rng or np.random.default_rng(0)
+
+    def scores(self, situation: QuerySituation) -> Floats:
+        """Numbers (q,) above 0 for cuts with gain, 0 for the others."""
+        worth = InformationGain().scores(situation) > 0
+        # 1 - random() is never 0: a cut with gain is always worth more than nothing.
+        drawn: Floats = np.where(worth, 1.0 - self._rng.random(len(worth)), 0.0)
+        return drawn

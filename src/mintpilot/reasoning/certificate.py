@@ -1,0 +1,67 @@
+"""Why no further question is asked, with the numbers that prove it (method, section 5)."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from mintpilot.core.gap import Belief
+from mintpilot.core.mission import AskingSettings
+from mintpilot.core.plan import Plan
+from mintpilot.core.tree import Certificate, Mint, StopReason
+from mintpilot.reasoning.classes import cheapest_under, class_entropy_bits
+from mintpilot.reasoning.situation import may_fail, succeeds
+
+_BECAUSE = {
+    StopReason.NO_GAPS: "Nothing that is unknown bears on the task.",
+    StopReason.ONE_CLASS: "One way to fly is right with {top:.1%} probability.",
+    StopReason.GOOD_FOR_ALL: "One plan succeeds whatever the answers would be.",
+    StopReason.NO_GAIN: "No question that is left is worth asking (the best would tell {gain:.3f} bits).",
+    StopReason.BUDGET: "All {budget} questions that are allowed have been asked.",
+    StopReason.SILENCE: "The operator does not answer.",
+    StopReason.INFEASIBLE: "Nothing can be flown under anything that is still possible.",
+    StopReason.NEVER_ASKS: "This method does not ask.",
+}
+
+
+def bound_s(plan: Plan | None, mint: Mint, belief: Belief, settings: AskingSettings) -> float:
+    """Largest cost of a plan above the best one, over the hypotheses that are left, seconds.
+
+    Infinite where the plan may fail, or where it is None though something might have been flown.
+    """
+    lowest = cheapest_under(mint).ravel()[mint.support]
+    if plan is None:
+        return 0.0 if np.isinf(lowest).all() else float("inf")
+    if may_fail(plan, belief, settings.floor) or not succeeds(plan, mint.belief).ravel()[mint.support].all():
+        return float("inf")
+    return float(max(0.0, (plan.cost_s - lowest[np.isfinite(lowest)]).max(initial=0.0)))
+
+
+def certify(
+    reason: StopReason,
+    plan: Plan | None,
+    mint: Mint,
+    belief: Belief,
+    settings: AskingSettings,
+    *,
+    best_gain_bits: float = 0.0,
+) -> Certificate:
+    """The certificate for flying that plan (None: for staying safe) and asking no more."""
+    top = mint.classes[0].probability
+    bound = bound_s(plan, mint, belief, settings)
+    because = _BECAUSE[reason].format(top=top, gain=best_gain_bits, budget=settings.max_questions)
+    return Certificate(
+        reason=reason,
+        top_class_probability=top,
+        entropy_bits=class_entropy_bits(mint),
+        best_gain_bits=best_gain_bits,
+        bound_s=bound,
+        text=f"{because} {_consequence(plan, bound)}",
+    )
+
+
+def _consequence(plan: Plan | None, bound: float) -> str:
+    if plan is None:
+        return "No safe plan is left to fly."
+    if np.isinf(bound):
+        return f"The plan of {plan.cost_s:.1f} s is the best that is safe, but it may not succeed."
+    return f"No further answer would change the flight of {plan.cost_s:.1f} s by more than {bound:.1f} s."

@@ -1,0 +1,129 @@
+"""Leaves into plan classes: the finished tree (method, sections 1 and 3)."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from mintpilot.core.gap import Assumptions, Belief, Joint
+from mintpilot.core.geometry import Floats, Ints
+from mintpilot.core.mission import AskingSettings
+from mintpilot.core.plan import Plan
+from mintpilot.core.tree import LeafReason, Mint, Node, PlanClass
+from mintpilot.reasoning.entropy import entropy_bits
+from mintpilot.reasoning.tables import box, joint_over
+
+
+@dataclass(slots=True, kw_only=True, eq=False)
+class Draft:
+    """A node that is still being worked on; the fields are those of `Node`."""
+
+    given: Assumptions
+    probability: float
+    optimistic: Plan | None = None
+    cautious: Plan | None = None
+    divergence_m: float | None = None
+    entropy_bits: float | None = None
+    branch_on: str = ""
+    children: list[Draft] = field(default_factory=list)
+    leaf: LeafReason | None = None
+    plan: Plan | None = None
+
+
+def finish(root: Draft, belief: Belief, axes: Collection[str], nodes: int, settings: AskingSettings) -> Mint:
+    """The tree as a value, its leaves sorted into classes, probabilities normalised over what was planned for."""
+    joint = joint_over(belief, axes, settings.max_joint)
+    leaf_of = np.full(joint.probability.shape, -1)
+    leaves = [d for d in _drafts(root) if d.leaf is not None]
+    for index, leaf in enumerate(leaves):
+        leaf_of[np.ix_(*box(joint, leaf.given))] = index
+    mass = np.where(leaf_of >= 0, joint.probability, 0.0)
+    joint = Joint(gaps=joint.gaps, probability=mass / mass.sum())
+    classes, class_of_leaf = _classes([_mass(joint, d) for d in leaves], leaves)
+    class_of = np.where(leaf_of >= 0, class_of_leaf[leaf_of], -1)
+    return Mint(
+        root=_frozen(root, joint),
+        belief=joint,
+        classes=classes,
+        class_of=class_of,
+        nodes=nodes,
+        not_expanded=sum(d.leaf is LeafReason.NOT_EXPANDED for d in leaves),
+    )
+
+
+def leaves_of(node: Node) -> Iterator[Node]:
+    """All leaves under a node, in order."""
+    if not node.children:
+        yield node
+    for child in node.children:
+        yield from leaves_of(child)
+
+
+def class_probabilities(mint: Mint) -> Floats:
+    """Probability of each plan class (m,)."""
+    return np.array([c.probability for c in mint.classes])
+
+
+def class_entropy_bits(mint: Mint) -> float:
+    """Entropy of the plan-class distribution [H(T)], bits (method, section 4)."""
+    return entropy_bits(class_probabilities(mint))
+
+
+def cheapest_under(mint: Mint) -> Floats:
+    """For each joint hypothesis, seconds that no plan can undercut; infinite where nothing can be flown.
+
+    The shape is that of ``mint.belief.probability``. It is the cost of the optimistic plan of the hypothesis' leaf:
+    exact where that plan relies on nothing, and a lower bound elsewhere.
+    """
+    lowest = np.full(mint.belief.probability.shape, np.inf)
+    for leaf in leaves_of(mint.root):
+        if leaf.optimistic is not None:
+            lowest[np.ix_(*box(mint.belief, leaf.given))] = leaf.optimistic.cost_s
+    return lowest
+
+
+def _classes(mass: list[float], leaves: list[Draft]) -> tuple[tuple[PlanClass, ...], Ints]:
+    """Classes in their order, and the class of each leaf."""
+    members: dict[str, list[int]] = {}
+    for index, leaf in enumerate(leaves):
+        members.setdefault(leaf.plan.signature if leaf.plan else "", []).append(index)
+    made = []
+    for key, indices in members.items():
+        plan = leaves[indices[0]].plan
+        probability = float(sum(mass[i] for i in indices))
+        given = tuple(leaves[i].given for i in indices)
+        cost = plan.cost_s if plan else float("inf")
+        # Rounding must not decide the order of equally likely classes.
+        made.append((-round(probability, 9), cost, key, PlanClass(plan=plan, probability=probability, given=given)))
+    made.sort(key=lambda item: item[:3])
+    class_of_leaf = np.zeros(len(leaves), np.int64)
+    for number, (_, _, key, _) in enumerate(made):
+        class_of_leaf[members[key]] = number
+    return tuple(item[3] for item in made), class_of_leaf
+
+
+def _drafts(draft: Draft) -> Iterator[Draft]:
+    yield draft
+    for child in draft.children:
+        yield from _drafts(child)
+
+
+def _mass(joint: Joint, draft: Draft) -> float:
+    return float(joint.probability[np.ix_(*box(joint, draft.given))].sum())
+
+
+def _frozen(draft: Draft, joint: Joint) -> Node:
+    return Node(
+        given=draft.given,
+        probability=_mass(joint, draft),
+        optimistic=draft.optimistic,
+        cautious=draft.cautious,
+        divergence_m=draft.divergence_m,
+        entropy_bits=draft.entropy_bits,
+        branch_on=draft.branch_on,
+        children=tuple(_frozen(child, joint) for child in draft.children),
+        leaf=draft.leaf,
+        plan=draft.plan,
+    )

@@ -1,0 +1,72 @@
+"""What each plan would cost under each joint hypothesis: regret, and whether a plan succeeds at all."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from mintpilot.core.gap import ABSENT, PASSABLE, Belief, GapKind, Joint
+from mintpilot.core.geometry import Bools, Floats
+from mintpilot.core.mission import AskingSettings
+from mintpilot.core.plan import Plan
+from mintpilot.core.tree import Mint, PlanClass
+from mintpilot.reasoning.tables import mask_of
+
+MAX_CELLS = 1 << 22
+"""Bound on the cells of a regret matrix; beyond it only the likeliest classes get a row."""
+
+
+def demands(plan: Plan) -> dict[str, tuple[str, ...]]:
+    """What must hold for the plan to succeed: gap id → the one value that it needs."""
+    return {
+        **dict.fromkeys(plan.enters, (PASSABLE,)),
+        **{gap: (value,) for gap, value in plan.binds},
+        **dict.fromkeys(plan.skips, (ABSENT,)),
+    }
+
+
+def succeeds(plan: Plan, joint: Joint) -> Bools:
+    """Under which joint hypotheses the plan succeeds, in the shape of ``joint.probability``."""
+    return mask_of(joint, demands(plan))
+
+
+def may_fail(plan: Plan, belief: Belief, floor: float) -> bool:
+    """Whether some single gap may, with more probability than the floor, have a value that the plan cannot bear."""
+    open_gaps = {g.id for g in belief.gaps}
+    return any(
+        1 - belief.probability_of(gap, values[0]) > floor
+        for gap, values in demands(plan).items()
+        if gap in open_gaps and values[0] in belief.factor(gap).gaps[belief.factor(gap).axis(gap)].values
+    )
+
+
+def regret_matrix(mint: Mint, settings: AskingSettings) -> Floats:
+    """Seconds lost by flying the plan of each class under each joint hypothesis, instead of the best of all classes.
+
+    Shape (m, n): classes by the hypotheses of `Mint.support`. Where a plan would fail it loses
+    ``settings.failure_price_s``; so does staying on the ground where something could have been flown.
+    """
+    support = mint.support
+    rows = min(len(mint.classes), max(1, MAX_CELLS // max(1, support.size)))
+    cost = np.full((rows, support.size), np.inf)
+    best = np.full(support.size, np.inf)
+    for number, group in enumerate(mint.classes):
+        if group.plan is not None:
+            fine = _class_succeeds(group, group.plan, mint).ravel()[support]
+            row = np.where(fine, group.plan.cost_s, np.inf)
+            best = np.minimum(best, row)
+            if number < rows:
+                cost[number] = row
+    hopeless = np.isinf(best)
+    lost: Floats = np.where(np.isinf(cost), settings.failure_price_s, cost - np.where(hopeless, 0.0, best))
+    lost[:, hopeless] = 0.0
+    return lost
+
+
+def _class_succeeds(group: PlanClass, plan: Plan, mint: Mint) -> Bools:
+    """Where a class's plan succeeds. Plans do not name ordered values that they need: of those, its own leaves' count."""
+    fine = succeeds(plan, mint.belief)
+    ordered = [g for g in mint.belief.gaps if g.kind is GapKind.VALUE]
+    for gap in ordered:
+        own = {v for given in group.given for v in given.possible(gap)}
+        fine = fine & mask_of(mint.belief, {gap.id: own})
+    return fine
