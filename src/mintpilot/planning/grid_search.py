@@ -1,0 +1,164 @@
+"""Shortest paths and distances on one grid, exact, compiled (2D 8-connected, 3D 26-connected, no corner cutting).
+
+Costs are in cell edges: 1, ``sqrt(2)`` and ``sqrt(3)`` a move; multiply by the resolution for metres.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from mintpilot.core.errors import InfeasibleError
+from mintpilot.core.geometry import Bools, Floats, Ints
+from mintpilot.planning import kernels
+from mintpilot.planning.lattice import Lattice, Words, lattice_of
+
+
+@dataclass(slots=True, eq=False)
+class Workspace:
+    """Memory that searches of one lattice use again and again; it grows when it must."""
+
+    size: int
+    """Number of nodes."""
+    cells: NDArray[np.void] = field(init=False)
+    """State of each node, dtype `kernels.CELL`."""
+    pool: NDArray[np.void] = field(init=False)
+    """Queue entries, dtype `kernels.ENTRY`."""
+    tag: int = field(init=False, default=0)
+    """Number of the last search: states with another tag are stale."""
+
+    def __post_init__(self) -> None:
+        self.cells = np.zeros(self.size, kernels.CELL)
+        self.pool = np.empty(1 << 12, kernels.ENTRY)
+
+    def next_tag(self) -> int:
+        """The number of a new search."""
+        if self.tag == 0xFFFFFFFF:
+            self.cells["tag"] = 0
+            self.tag = 0
+        self.tag += 1
+        return self.tag
+
+
+class GridSearch:
+    """Searches on one grid.
+
+    Args:
+        free: flags (nz, ny, nx); ``nz == 1`` makes a flat, 8-connected grid.
+    """
+
+    def __init__(self, free: Bools) -> None:
+        self.lattice: Lattice = lattice_of(free)
+        self.work = Workspace(self.lattice.size)
+        self.expanded = 0
+        """Nodes that the last search expanded."""
+
+    def shortest_path(self, start: ArrayLike, goal: ArrayLike) -> tuple[float, Ints] | None:
+        """The shortest path between two cells (z, y, x).
+
+        Returns:
+            (cost in edges, cells (n, 3) from start to goal, both among them), or None where there is none.
+        """
+        source, target = self.lattice.node(start), self.lattice.node(goal)
+        cost, nodes = self.node_path(source, target, self.lattice.allowed)
+        if not np.isfinite(cost):
+            return None
+        cells = self.lattice.cells(nodes)
+        return self.lattice.path_cost(cells), cells
+
+    def node_path(
+        self, source: int, target: int, allowed: Words, guide: Floats | None = None
+    ) -> tuple[float, NDArray[np.int64]]:
+        """A* over nodes with any word of allowed moves; (infinity, empty) where there is no path.
+
+        Args:
+            source: node to start from.
+            target: node to reach.
+            allowed: moves of each node, at most those of the lattice.
+            guide: exact lower bounds of the distance to the target, (size,); None: octile distance.
+        """
+        lattice, work, moves = self.lattice, self.work, self.lattice.moves
+        if not (lattice.free[source] and lattice.free[target]):
+            return np.inf, np.zeros(0, np.int64)
+        cost, self.expanded, work.pool = kernels.astar(
+            allowed,
+            lattice.offset,
+            moves.step,
+            moves.length,
+            moves.natural,
+            lattice.padded[2],
+            lattice.padded[1],
+            source,
+            target,
+            guide,
+            work.cells,
+            work.next_tag(),
+            work.pool,
+        )
+        if not np.isfinite(cost):
+            return np.inf, np.zeros(0, np.int64)
+        return cost, kernels.walk_back(work.cells, lattice.offset, source, target)
+
+    def node_field(self, source: int, target: int, bound: float, allowed: Words) -> None:
+        """Leaves in `Workspace.cells`, under the present tag, the distances of `kernels.field`."""
+        lattice, work, moves = self.lattice, self.work, self.lattice.moves
+        self.expanded, work.pool = kernels.field(
+            allowed,
+            lattice.offset,
+            moves.step,
+            moves.length,
+            moves.natural,
+            lattice.padded[2],
+            lattice.padded[1],
+            source,
+            target,
+            bound,
+            work.cells,
+            work.next_tag(),
+            work.pool,
+        )
+
+    def distances(self, source: ArrayLike, bound: float = np.inf) -> Floats:
+        """Distance in edges from a cell (z, y, x) to every cell (nz, ny, nx).
+
+        Cells further than ``bound``, blocked or cut off are at infinity.
+        """
+        node = self.lattice.node(source)
+        out = np.full(self.lattice.size, np.inf)
+        if self.lattice.free[node]:
+            self.node_field(node, -1, bound, self.lattice.allowed)
+            cells = self.work.cells
+            reached = cells["tag"] == self.work.tag
+            out[reached] = cells["g"][reached]
+        up = slice(None) if self.lattice.shape[0] == 1 else slice(1, -1)
+        distances: Floats = out.reshape(self.lattice.padded)[up, 1:-1, 1:-1].copy()
+        return distances
+
+
+def shortest_path(free: Bools, start: ArrayLike, goal: ArrayLike) -> tuple[float, Ints]:
+    """The shortest path on a grid, for a single query; keep a `GridSearch` for several.
+
+    Args:
+        free: flags (nz, ny, nx).
+        start: cell (z, y, x).
+        goal: cell (z, y, x).
+
+    Returns:
+        (cost in edges, cells (n, 3)).
+
+    Raises:
+        MapError: a cell is outside the grid.
+        InfeasibleError: the two are not connected.
+    """
+    found = GridSearch(free).shortest_path(start, goal)
+    if found is None:
+        ends = " to ".join(str(tuple(int(i) for i in np.ravel(cell))) for cell in (start, goal))
+        raise InfeasibleError(f"no path of free cells from {ends}; see which cells block the way")
+    return found
+
+
+def distance_field(free: Bools, source: ArrayLike, bound: float = np.inf) -> Floats:
+    """Distances in edges (nz, ny, nx) from a cell to all others; infinity where it is further than ``bound``."""
+    return GridSearch(free).distances(source, bound)

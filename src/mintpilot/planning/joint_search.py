@@ -1,0 +1,198 @@
+"""The best way under every joint hypothesis of obstacle gaps, from one search (method, section 2).
+
+1. A plan that enters no region gives an upper bound (none where there is no such plan).
+2. Distances to the goal on the optimistic map, cut off by that bound, are a perfect heuristic for every hypothesis. A
+   region whose cells all lie on ways as long as the bound is never touched: it is irrelevant.
+3. One search over labels (cost, set of regions entered), where a label is beaten by one at the same place with no more
+   cost and no other region, gives the decision list.
+
+Detours in series can make the list approach 2^k. The labels have a budget; when it is hit, lazy branching with the same
+heuristic goes on, exact and slower, within a bound on its searches; what it leaves out is reported, never guessed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from mintpilot.core.geometry import Bools, Floats, Ints
+from mintpilot.planning import joint_kernel
+from mintpilot.planning.decision_list import DecisionList, Way, sorted_ways
+from mintpilot.planning.grid_search import GridSearch
+from mintpilot.planning.lazy import lazy_ways
+from mintpilot.planning.overlay import Overlay, closed_moves, entered_by, overlay_of
+
+MAX_REGIONS = 63
+"""Regions that one search can tell apart; the least relevant ones beyond it are taken as blocked."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Effort:
+    """Bounds on the work of one joint search."""
+
+    labels: int = 2_000_000
+    """Labels made before lazy branching takes over (40 bytes each)."""
+    searches: int = 512
+    """Searches of lazy branching before it gives up being complete."""
+
+
+class JointSearch:
+    """Joint searches on one grid with regions of unknown passability.
+
+    Args:
+        free: flags (nz, ny, nx), with every region taken as passable.
+        regions: flat cells of each region; they may overlap and lie anywhere. Bit r of a mask is the r-th.
+        effort: bounds on the work of one search.
+    """
+
+    def __init__(self, free: Bools, regions: Sequence[Ints], effort: Effort | None = None) -> None:
+        self.grid = GridSearch(free)
+        self.regions = tuple(self.grid.lattice.nodes_of_flat(np.asarray(r, np.int64)) for r in regions)
+        self.effort = effort or Effort()
+        self.searches = 0
+        """Joint searches made so far."""
+        self.labels = 0
+        """Labels that the last search made."""
+        self._pool: NDArray[np.void] = np.empty(1 << 14, joint_kernel.LABEL)
+        self._overlays: dict[tuple[int, ...], Overlay] = {}
+
+    def between(self, start: ArrayLike, goal: ArrayLike) -> DecisionList[Ints]:
+        """All ways from start to goal (cells (z, y, x)) that are best under some set of blocked regions.
+
+        Costs are in edges, paths are cells (n, 3). Regions over start or goal are required by every way.
+        """
+        lattice = self.grid.lattice
+        ends = lattice.node(start), lattice.node(goal)
+        self.searches += 1
+        if not (lattice.free[ends[0]] and lattice.free[ends[1]]):
+            return DecisionList(ways=())
+        chosen = self._chosen(*ends)
+        overlay = self._overlay(chosen)
+        bound, safe_path = self.grid.node_path(*ends, overlay.without)
+        ways = [self._way(safe_path, overlay)] if np.isfinite(bound) else []
+        self.grid.node_field(ends[1], ends[0], bound, self._opened(chosen))
+        done, more = self._labels(*ends, bound, overlay)
+        result: DecisionList[NDArray[np.int64]] = DecisionList(ways=())
+        if not done:
+            result = self._branch(*ends, overlay, chosen)
+            more = list(result.ways)
+        return DecisionList(
+            ways=tuple(self._named(w, chosen) for w in sorted_ways([*ways, *more])),
+            complete=result.complete and len(chosen) == len(self.regions),
+            left_out=tuple(r for r in range(len(self.regions)) if r not in set(chosen)),
+            not_expanded=result.not_expanded,
+        )
+
+    def under(self, start: ArrayLike, goal: ArrayLike, blocked: int) -> tuple[float, Ints] | None:
+        """One plain search with the regions of that bit set blocked, as `GridSearch.shortest_path`."""
+        lattice = self.grid.lattice
+        nodes = [r for i, r in enumerate(self.regions) if blocked >> i & 1]
+        allowed = closed_moves(lattice, lattice.allowed, nodes)
+        ends = lattice.node(start), lattice.node(goal)
+        if any(end in r for r in nodes for end in ends):
+            return None
+        cost, path = self.grid.node_path(*ends, allowed)
+        if not np.isfinite(cost):
+            return None
+        cells = lattice.cells(path)
+        return lattice.path_cost(cells), cells
+
+    def _chosen(self, start: int, goal: int) -> tuple[int, ...]:
+        """The regions to tell apart: all, or those that lie on the shortest ways."""
+        count = len(self.regions)
+        if count <= MAX_REGIONS:
+            return tuple(range(count))
+        allowed = self.grid.lattice.allowed
+        ahead = self._distances(start, allowed)
+        behind = self._distances(goal, allowed)
+        through = ahead + behind
+        nearest = [float(through[r].min(initial=np.inf)) for r in self.regions]
+        return tuple(sorted(sorted(range(count), key=lambda r: (nearest[r], r))[:MAX_REGIONS]))
+
+    def _distances(self, source: int, allowed: NDArray[np.uint32]) -> Floats:
+        self.grid.node_field(source, -1, np.inf, allowed)
+        cells = self.grid.work.cells
+        return np.where(cells["tag"] == self.grid.work.tag, cells["g"], np.inf)
+
+    def _opened(self, chosen: tuple[int, ...]) -> NDArray[np.uint32]:
+        """Allowed moves with the chosen regions passable and the others blocked."""
+        lattice = self.grid.lattice
+        if len(chosen) == len(self.regions):
+            return lattice.allowed
+        return closed_moves(lattice, lattice.allowed, [r for i, r in enumerate(self.regions) if i not in set(chosen)])
+
+    def _overlay(self, chosen: tuple[int, ...]) -> Overlay:
+        if chosen not in self._overlays:
+            self._overlays.clear()
+            nodes = [self.regions[r] for r in chosen]
+            self._overlays[chosen] = overlay_of(self.grid.lattice, nodes, self._opened(chosen))
+        return self._overlays[chosen]
+
+    def _labels(
+        self, start: int, goal: int, bound: float, overlay: Overlay
+    ) -> tuple[bool, list[Way[NDArray[np.int64]]]]:
+        """The search over labels; needs the field of distances to the goal in the workspace."""
+        lattice, work, moves = self.grid.lattice, self.grid.work, self.grid.lattice.moves
+        done, count, self.labels, self.grid.expanded, found, self._pool = joint_kernel.search_labels(
+            overlay.near,
+            lattice.offset,
+            moves.length,
+            moves.natural,
+            lattice.swept,
+            overlay.region,
+            start,
+            goal,
+            bound,
+            self.effort.labels,
+            work.cells,
+            work.tag,
+            self._pool,
+        )
+        labels = [int(i) for i in found["label"][:count] if i >= 0] if done else []
+        return done, [self._way(joint_kernel.trace(self._pool, i), overlay) for i in labels]
+
+    def _branch(
+        self, start: int, goal: int, overlay: Overlay, chosen: tuple[int, ...]
+    ) -> DecisionList[NDArray[np.int64]]:
+        """Lazy branching, guided by the exact optimistic distances."""
+        guide = self._distances(goal, self._opened(chosen))
+        search = _Branching(search=self, ends=(start, goal), guide=guide, overlay=overlay, chosen=chosen)
+        return lazy_ways(search, max_searches=self.effort.searches)
+
+    def _way(self, nodes: NDArray[np.int64], overlay: Overlay) -> Way[NDArray[np.int64]]:
+        lattice = self.grid.lattice
+        mask = int(entered_by(nodes, lattice.offset, lattice.swept, overlay.region))
+        cells = lattice.cells(nodes)
+        return Way(cost=lattice.path_cost(cells), mask=mask, path=cells)
+
+    def _named(self, way: Way[Ints], chosen: tuple[int, ...]) -> Way[Ints]:
+        """The way with its mask in terms of all regions instead of the chosen ones."""
+        mask = sum(1 << r for bit, r in enumerate(chosen) if way.mask >> bit & 1)
+        return Way(cost=way.cost, mask=mask, path=way.path)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class _Branching:
+    """The grid as a black box for lazy branching; regions are bits of the overlay."""
+
+    search: JointSearch
+    ends: tuple[int, int]
+    guide: Floats
+    overlay: Overlay
+    chosen: tuple[int, ...]
+
+    def path(self, blocked: frozenset[int]) -> tuple[float, Ints, frozenset[int]] | None:
+        """One A* with those regions blocked."""
+        grid, overlay = self.search.grid, self.overlay
+        if any(int(overlay.region[end]) >> r & 1 for r in blocked for end in self.ends):
+            return None
+        nodes = [self.search.regions[self.chosen[r]] for r in sorted(blocked)]
+        allowed = closed_moves(grid.lattice, self.search._opened(self.chosen), nodes)
+        cost, path = grid.node_path(*self.ends, allowed, self.guide)
+        if not np.isfinite(cost):
+            return None
+        way = self.search._way(path, overlay)
+        return way.cost, way.path, frozenset(r for r in range(len(self.chosen)) if way.mask >> r & 1)
