@@ -1,0 +1,135 @@
+"""Operators without a person: one who knows the truth, one who repeats, one made of a function."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+
+import numpy as np
+
+from mintpilot.core.errors import InputError
+from mintpilot.core.ports import Operator, TruthOracle
+from mintpilot.core.query import Answer, Question, Reply
+
+
+class ScriptedOperator(Operator):
+    """Answers from the truth, with as much error, doubt and silence as is asked for.
+
+    Each question draws the same amount of random numbers, so that one rate does not disturb the others. The latency
+    is reported, not slept.
+
+    Args:
+        truth: knows the value of every gap.
+        rng: decides on errors, doubt and silence.
+        answer_error: probability that a yes or no is the opposite of the truth [e].
+        unsure_rate: probability of "I don't know".
+        silence_rate: probability of no answer at all.
+        latency_s: seconds that an answer takes; longer than the patience is silence.
+
+    Raises:
+        InputError: a rate is not a probability, or the latency is negative.
+    """
+
+    def __init__(
+        self,
+        truth: TruthOracle,
+        *,
+        rng: np.random.Generator,
+        answer_error: float = 0.0,
+        unsure_rate: float = 0.0,
+        silence_rate: float = 0.0,
+        latency_s: float = 3.0,
+    ) -> None:
+        for name, rate in (
+            ("answer_error", answer_error),
+            ("unsure_rate", unsure_rate),
+            ("silence_rate", silence_rate),
+        ):
+            if not 0 <= rate <= 1:
+                raise InputError(f"scripted operator {name} = {rate}: must be a probability from 0 to 1")
+        if not latency_s >= 0:
+            raise InputError(f"scripted operator latency_s = {latency_s}: must be 0 or more seconds")
+        self._truth = truth
+        self._rng = rng
+        self._answer_error = answer_error
+        self._unsure_rate = unsure_rate
+        self._silence_rate = silence_rate
+        self._latency_s = latency_s
+
+    def ask(self, question: Question, patience_s: float) -> Answer:
+        """The true answer to the question's query (its words are not looked at), or what the rates make of it.
+
+        A query that speaks of a gap without a true value is answered UNSURE.
+        """
+        wrong, unsure, silent = self._rng.random(3) < (self._answer_error, self._unsure_rate, self._silence_rate)
+        if silent or self._latency_s > patience_s:
+            return Answer(reply=Reply.TIMEOUT, latency_s=patience_s)
+        truth = self._true_answer(question)
+        if truth is None or unsure:
+            return Answer(reply=Reply.UNSURE, latency_s=self._latency_s, text="don't know")
+        says_yes = truth != bool(wrong)
+        return Answer(
+            reply=Reply.YES if says_yes else Reply.NO,
+            latency_s=self._latency_s,
+            text="yes" if says_yes else "no",
+        )
+
+    def tell(self, text: str) -> None:
+        """Nobody is there: nothing happens."""
+
+    def _true_answer(self, question: Question) -> bool | None:
+        values = {gap.id: value for gap in question.gaps if (value := self._truth.value_of(gap)) is not None}
+        if any(gap_id not in values for gap_id in question.query.gap_ids):
+            return None
+        return question.query.holds(values)
+
+
+class RecordedOperator(Operator):
+    """Gives recorded answers in their order, then stays silent. Keeps what it was asked and told.
+
+    Args:
+        answers: what to reply to the first question, the second …; a bare `Reply` takes no time.
+
+    Attributes:
+        questions: the questions that came, oldest first.
+        told: the messages that came, oldest first.
+    """
+
+    def __init__(self, answers: Iterable[Answer | Reply]) -> None:
+        self._answers = iter(answers)
+        self.questions: list[Question] = []
+        self.told: list[str] = []
+
+    def ask(self, question: Question, patience_s: float) -> Answer:
+        """The next recorded answer; `Reply.TIMEOUT` when none is left."""
+        self.questions.append(question)
+        return _as_answer(next(self._answers, Reply.TIMEOUT), patience_s)
+
+    def tell(self, text: str) -> None:
+        """Keeps the message."""
+        self.told.append(text)
+
+
+class FunctionOperator(Operator):
+    """Answers with whatever a function returns.
+
+    Args:
+        answer: called with the question and the patience in seconds.
+    """
+
+    def __init__(self, answer: Callable[[Question, float], Answer | Reply]) -> None:
+        self._answer = answer
+
+    def ask(self, question: Question, patience_s: float) -> Answer:
+        """What the function says."""
+        return _as_answer(self._answer(question, patience_s), patience_s)
+
+    def tell(self, text: str) -> None:
+        """Nobody is there: nothing happens."""
+
+
+def _as_answer(answer: Answer | Reply, patience_s: float) -> Answer:
+    """A bare reply as an answer; silence takes the whole patience."""
+    if isinstance(answer, Answer):
+        return answer
+    silent = answer is Reply.TIMEOUT
+    return Answer(reply=answer, latency_s=patience_s if silent else 0.0, text="" if silent else answer.value)

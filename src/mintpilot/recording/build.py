@@ -1,0 +1,267 @@
+"""From what a mission told to its record."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+import platform
+from collections.abc import Iterable, Sequence
+from enum import Enum
+from importlib import metadata
+from itertools import pairwise
+
+import numpy as np
+from pydantic import JsonValue
+
+from mintpilot.core.events import Asked, Deliberated, LegFlown, PlanChosen
+from mintpilot.core.gap import GapKind, KnowledgeGap
+from mintpilot.core.mission import Outcome
+from mintpilot.core.semantic_map import SemanticMap
+from mintpilot.core.trajectory import FlightEnd
+from mintpilot.core.tree import Certificate, GapAccount
+from mintpilot.recording.history import History
+from mintpilot.recording.record import (
+    CertificateRecord,
+    FlightRecord,
+    GapRecord,
+    MissionRecord,
+    NoticeRecord,
+    QuestionRecord,
+    RoundRecord,
+    SeenRecord,
+    ValueRecord,
+)
+from mintpilot.recording.tree_data import Told, class_records, tree_record
+from mintpilot.recording.words import say
+
+_UNDECIDED = "The mission ended before this was decided."
+
+
+def build_record(history: History, *, run_dir: str = "", unfinished: str = "") -> MissionRecord:
+    """The record of what is known so far.
+
+    Args:
+        history: the events of one mission.
+        run_dir: where it is kept; empty where nothing is.
+        unfinished: for a mission without a verdict, why; it then counts as aborted.
+    """
+    started, ended, mint = history.started, history.ended, history.mint
+    told = Told(replies=history.replies, asked=history.asked_gaps, flown=history.flown_signature)
+    certificate = history.chosen[-1].certificate if history.chosen else None
+    mission_legs = [leg for leg in history.legs if leg.phase != "survey"]
+    survey_legs = [leg for leg in history.legs if leg.phase == "survey"]
+    plan = history.chosen[-1].plan if history.chosen else None
+    flight = flight_record(mission_legs)
+    if not mission_legs and plan is not None:
+        flight = flight.model_copy(update={"planned_m": plan.length_m})
+    return MissionRecord(
+        name=started.mission.name if started else "",
+        instruction=started.mission.instruction if started else "",
+        strategy=started.strategy if started else "",
+        outcome=ended.verdict.outcome if ended else Outcome.ABORTED,
+        reason=ended.verdict.reason if ended else unfinished or "The mission was not finished.",
+        complete=ended is not None,
+        seed=started.seed if started else None,
+        settings=_settings(started.mission) if started else {},
+        versions=versions(),
+        gaps=gap_records(history.gaps, history.chosen, history.asked_gaps),
+        questions=tuple(map(_question, history.asked)),
+        rounds=tuple(map(_round, history.deliberations)),
+        tree=tree_record(mint, history.gaps, told) if mint else None,
+        plan_classes=class_records(mint, history.gaps, told) if mint else (),
+        certificate=_certificate(certificate) if certificate else None,
+        flight=flight,
+        survey=flight_record(survey_legs) if survey_legs else None,
+        seen=_seen(history.map) if history.map else (),
+        frames=history.frames,
+        timings_s=dict(history.timings_s),
+        notices=tuple(NoticeRecord(kind=n.kind, text=n.text) for n in history.notices),
+        run_dir=run_dir,
+    )
+
+
+def versions() -> dict[str, str]:
+    """Versions of Python, MintPilot and the installed parts that decide results."""
+    found = {"python": platform.python_version()}
+    for part in ("mintpilot", "numpy", "scipy", "numba", "mujoco"):
+        try:
+            found[part] = metadata.version(part)
+        except metadata.PackageNotFoundError:
+            continue
+    return found
+
+
+def flight_record(legs: Sequence[LegFlown]) -> FlightRecord:
+    """Lengths, time and tracking error over these legs; all null where none was flown."""
+    if not legs:
+        return FlightRecord(planned_m=None, flown_m=None, seconds=None, rms_error_m=None, max_error_m=None)
+    planned_m = sum(
+        _length_m(leg.log.reference_m) if leg.log.end is FlightEnd.INTERRUPTED else leg.trajectory.length_m
+        for leg in legs
+    )
+    times = [leg.log.time_s for leg in legs if leg.log.time_s.size]
+    one_clock = all(a[-1] <= b[0] for a, b in pairwise(times))
+    spans = [float(t[-1] - t[0]) for t in times]
+    errors = [np.linalg.norm(leg.log.position_m - leg.log.reference_m, axis=1) for leg in legs]
+    error_m = np.concatenate(errors)
+    return FlightRecord(
+        planned_m=float(planned_m),
+        flown_m=sum(_length_m(leg.log.position_m) for leg in legs),
+        seconds=float(times[-1][-1] - times[0][0]) if times and one_clock else sum(spans),
+        rms_error_m=float(np.sqrt(np.mean(error_m**2))) if error_m.size else None,
+        max_error_m=float(error_m.max()) if error_m.size else None,
+    )
+
+
+def gap_records(
+    gaps: Iterable[KnowledgeGap], chosen: Iterable[PlanChosen], asked: frozenset[str]
+) -> tuple[GapRecord, ...]:
+    """Every gap with its latest account; what was once asked keeps the account that says so."""
+    accounts: dict[str, GapAccount] = {}
+    for choice in chosen:
+        for account in choice.accounts:
+            before = accounts.get(account.gap_id)
+            if before is None or account.asked or not before.asked:
+                accounts[account.gap_id] = account
+    known = {gap.id: gap for gap in gaps}
+    return tuple(
+        _gap(gap_id, known.get(gap_id), accounts.get(gap_id), gap_id in asked)
+        for gap_id in dict.fromkeys((*known, *accounts))
+    )
+
+
+def _gap(gap_id: str, gap: KnowledgeGap | None, account: GapAccount | None, asked: bool) -> GapRecord:
+    description = gap.description if gap else account.description if account else gap_id
+    kind = gap.kind if gap else GapKind(account.kind) if account and account.kind in set(GapKind) else None
+    values = zip(gap.values, gap.prior, strict=True) if gap else ()
+    return GapRecord(
+        id=gap_id,
+        kind=kind,
+        subject=gap.subject if gap else "",
+        description=description,
+        values=tuple(ValueRecord(value=v, prior=p, means=say(gap, [v]) if gap else v) for v, p in values),
+        asked=asked or bool(account and account.asked),
+        relevant=account.relevant if account else None,
+        why=account.why if account else _UNDECIDED,
+        cost_if_favourable_s=account.cost_if_favourable_s if account else None,
+        cost_if_unfavourable_s=account.cost_if_unfavourable_s if account else None,
+        divergence_m=account.divergence_m if account else None,
+        entropy_bits=account.entropy_bits if account else None,
+        gain_bits=account.gain_bits if account else None,
+        regret_saved_s=account.regret_saved_s if account else None,
+    )
+
+
+def _question(asked: Asked) -> QuestionRecord:
+    question, scored, answer = asked.question, asked.scored, asked.answer
+    return QuestionRecord(
+        text=question.text,
+        query=question.query.id,
+        gaps=question.query.gap_ids,
+        gain_bits=scored.gain_bits,
+        score=scored.score,
+        regret_saved_s=scored.regret_saved_s,
+        yes_probability=scored.yes_probability,
+        yes_means=question.yes_means,
+        no_means=question.no_means,
+        worded_by=question.worded_by,
+        wording_s=asked.wording_s,
+        attempt=question.attempt,
+        reply=answer.reply,
+        command=answer.command,
+        answer_text=answer.text,
+        latency_s=answer.latency_s,
+    )
+
+
+def _round(deliberated: Deliberated) -> RoundRecord:
+    return RoundRecord(
+        round=deliberated.round,
+        seconds=deliberated.seconds,
+        gaps=len(deliberated.gaps),
+        nodes=deliberated.mint.nodes if deliberated.mint else 0,
+        query=deliberated.chosen.query.id if deliberated.chosen else "",
+        alternatives=tuple((scored.query.id, scored.gain_bits) for scored in deliberated.alternatives),
+    )
+
+
+def _certificate(certificate: Certificate) -> CertificateRecord:
+    return CertificateRecord(
+        reason=certificate.reason,
+        text=certificate.text,
+        top_class_probability=certificate.top_class_probability,
+        entropy_bits=certificate.entropy_bits,
+        best_gain_bits=certificate.best_gain_bits,
+        bound_s=certificate.bound_s,
+    )
+
+
+def _seen(seen: SemanticMap) -> tuple[SeenRecord, ...]:
+    objects = (
+        SeenRecord(
+            id=o.id,
+            kind="object",
+            description=", ".join(f"{a.name} {a.value}" for a in o.attributes) or o.label,
+            position_m=o.position_m,
+            state=o.label,
+            sightings=o.sightings,
+            view=o.best_view,
+        )
+        for o in seen.objects
+    )
+    regions = (
+        SeenRecord(
+            id=r.id,
+            kind="region",
+            description=r.description or r.id,
+            position_m=_middle(seen, r.cells),
+            state=r.passable.value,
+            view=r.best_view,
+        )
+        for r in seen.regions
+    )
+    rooms = (
+        SeenRecord(
+            id=r.id,
+            kind="room",
+            description=r.description or r.id,
+            position_m=r.door_m.centre_m,
+            state=r.occupied.value,
+            view=r.best_view,
+        )
+        for r in seen.rooms
+    )
+    return (*objects, *regions, *rooms)
+
+
+def _middle(seen: SemanticMap, cells: np.ndarray[tuple[int, ...], np.dtype[np.int64]]) -> tuple[float, float, float]:
+    """Middle of a region's cells, metres; the lattice's middle for a region without cells."""
+    if not cells.size:
+        return seen.frame.box.centre_m
+    zyx = np.stack(np.unravel_index(cells, seen.frame.shape), axis=1)
+    x, y, z = seen.frame.centres_of(zyx).mean(axis=0)
+    return (float(x), float(y), float(z))
+
+
+def _length_m(path_m: np.ndarray[tuple[int, ...], np.dtype[np.float64]]) -> float:
+    return float(np.linalg.norm(np.diff(path_m, axis=0), axis=1).sum())
+
+
+def _settings(value: object) -> dict[str, JsonValue]:
+    """A settings dataclass as plain data."""
+    assert dataclasses.is_dataclass(value)
+    return {f.name: _plain(getattr(value, f.name)) for f in dataclasses.fields(value)}
+
+
+def _plain(value: object) -> JsonValue:
+    if dataclasses.is_dataclass(value):
+        return _settings(value)
+    if isinstance(value, Enum):
+        return str(value.value)
+    if isinstance(value, float):
+        return value if math.isfinite(value) else None
+    if value is None or isinstance(value, str | int):
+        return value
+    if isinstance(value, tuple | list):
+        return [_plain(item) for item in value]
+    return str(value)

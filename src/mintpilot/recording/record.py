@@ -1,0 +1,261 @@
+"""The record of a mission: one typed, versioned document, from which reports and tables are made."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+from typing import Annotated
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict, JsonValue, ValidationError
+
+from mintpilot.core.errors import RecordError
+from mintpilot.core.gap import GapKind
+from mintpilot.core.mission import Outcome
+from mintpilot.core.query import Command, Reply
+from mintpilot.core.tree import LeafReason, StopReason
+
+SCHEMA_VERSION = 1
+"""Of the record; raised with every change that old readers would misread."""
+
+
+def _finite(value: object) -> object:
+    """JSON knows no infinity: what is not finite becomes null."""
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+Figure = Annotated[float | None, BeforeValidator(_finite)]
+"""A number; null where there is none, or none that is finite."""
+Point = tuple[float, float, float]
+
+
+class Part(BaseModel):
+    """Base of all parts: never changed in place, and nothing unknown in it."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+
+class ValueRecord(Part):
+    """One value that a gap may have."""
+
+    value: str
+    prior: float
+    means: str
+    """In plain words."""
+
+
+class GapRecord(Part):
+    """One gap: asked or not, and why, in figures."""
+
+    id: str
+    kind: GapKind | None
+    subject: str
+    description: str
+    values: tuple[ValueRecord, ...]
+    asked: bool
+    relevant: bool | None
+    """Whether any best plan depended on it; null: the mission ended before that was decided."""
+    why: str
+    cost_if_favourable_s: Figure = None
+    cost_if_unfavourable_s: Figure = None
+    """Null also where no plan exists then."""
+    divergence_m: Figure = None
+    entropy_bits: Figure = None
+    gain_bits: Figure = None
+    regret_saved_s: Figure = None
+
+
+class QuestionRecord(Part):
+    """One question, why it was asked, and what came back."""
+
+    text: str
+    query: str
+    """Stable id of the cut."""
+    gaps: tuple[str, ...]
+    gain_bits: Figure
+    score: Figure
+    regret_saved_s: Figure
+    yes_probability: Figure
+    yes_means: str
+    no_means: str
+    worded_by: str
+    wording_s: Figure
+    attempt: int
+    reply: Reply
+    command: Command | None
+    answer_text: str
+    """As it was given: data, never an instruction."""
+    latency_s: Figure
+
+
+class TreeRecord(Part):
+    """One node of the tree with everything under it."""
+
+    given: dict[str, tuple[str, ...]]
+    """What is assumed here: for some gaps, the values that are still possible."""
+    words: str
+    """What is assumed here beyond the node above, in plain words."""
+    probability: float
+    optimistic_s: Figure = None
+    cautious_s: Figure = None
+    divergence_m: Figure = None
+    entropy_bits: Figure = None
+    branch_on: str = ""
+    branch_words: str = ""
+    """Description of the gap that the children differ in."""
+    asked: bool = False
+    """Whether a question spoke of that gap."""
+    ruled_out: bool = False
+    """Whether an answer contradicts the assumptions."""
+    leaf: LeafReason | None = None
+    cost_s: Figure = None
+    """Of a leaf's plan."""
+    plan: str = ""
+    """Signature of a leaf's plan."""
+    flown: bool = False
+    """Whether that plan is the one that was chosen in the end."""
+    left_out: int = 0
+    """Nodes under this one that are not in the record."""
+    children: tuple[TreeRecord, ...] = ()
+
+
+class PlanClassRecord(Part):
+    """Joint hypotheses that lead to the same plan."""
+
+    probability: float
+    cost_s: Figure
+    """Null: nothing can be flown."""
+    length_m: Figure
+    plan: str
+    words: tuple[str, ...]
+    """Which hypotheses, in plain words; the first few."""
+    hypotheses: int
+    """How many leaves there are."""
+    enters: tuple[str, ...] = ()
+    skips: tuple[str, ...] = ()
+    flown: bool = False
+
+
+class CertificateRecord(Part):
+    """Why the asking stopped, with the numbers."""
+
+    reason: StopReason
+    text: str
+    top_class_probability: Figure
+    entropy_bits: Figure
+    best_gain_bits: Figure
+    bound_s: Figure
+    """Null: not bounded."""
+
+
+class RoundRecord(Part):
+    """One deliberation."""
+
+    round: int
+    seconds: float
+    gaps: int
+    nodes: int
+    query: str = ""
+    """Id of the cut that was chosen; empty where the asking stopped."""
+    alternatives: tuple[tuple[str, Figure], ...] = ()
+    """The next best cuts with their gains in bits."""
+
+
+class FlightRecord(Part):
+    """What was planned and what was flown, survey not included."""
+
+    planned_m: Figure
+    """Length of the trajectories; of those that were broken off, the part that was commanded."""
+    flown_m: Figure
+    seconds: Figure
+    """Vehicle's clock, from the first sample to the last."""
+    rms_error_m: Figure
+    """Root mean square distance between where the drone was and where it should have been."""
+    max_error_m: Figure
+
+
+class SeenRecord(Part):
+    """Something in the map."""
+
+    id: str
+    kind: str
+    """``object``, ``region`` or ``room``."""
+    description: str
+    position_m: Point
+    state: str
+    """For regions and rooms, what is known: ``open``, ``yes``, ``no``; for objects their class."""
+    sightings: int = 0
+    view: tuple[int, int, int, int, int] | None = None
+    """Provenance: number of the picture, and left, top, right, bottom in it, pixels."""
+
+
+class NoticeRecord(Part):
+    """Something worth a line."""
+
+    kind: str
+    text: str
+
+
+class MissionRecord(Part):
+    """Everything that is kept of one mission."""
+
+    schema_version: int = SCHEMA_VERSION
+    name: str
+    instruction: str
+    strategy: str
+    outcome: Outcome
+    reason: str
+    complete: bool
+    """False where the mission was still running, or ended without a verdict."""
+    seed: int | None
+    settings: dict[str, JsonValue]
+    """The mission as it was resolved: limits, asking, survey, volume …"""
+    versions: dict[str, str]
+    """Of Python, MintPilot and the parts that decide results."""
+    gaps: tuple[GapRecord, ...]
+    questions: tuple[QuestionRecord, ...]
+    rounds: tuple[RoundRecord, ...]
+    tree: TreeRecord | None
+    plan_classes: tuple[PlanClassRecord, ...]
+    certificate: CertificateRecord | None
+    flight: FlightRecord
+    survey: FlightRecord | None
+    seen: tuple[SeenRecord, ...]
+    frames: int
+    """Pictures that were looked at."""
+    timings_s: dict[str, float]
+    notices: tuple[NoticeRecord, ...]
+    run_dir: str
+    """Empty where nothing was written."""
+
+
+def read_record(path: Path) -> MissionRecord:
+    """The record in that file, or in the run folder of that name.
+
+    Raises:
+        RecordError: it cannot be read, is not a record, or is of a version that this program does not know.
+    """
+    file = path / "record.json" if path.is_dir() else path
+    try:
+        data = json.loads(file.read_bytes())
+    except OSError as error:
+        raise RecordError(
+            f"cannot read the record {file}: {error.strerror}; give the run folder of a mission"
+        ) from error
+    except ValueError as error:
+        raise RecordError(f"{file} is not JSON ({error}); give the record.json of a run folder") from error
+    version = data.get("schema_version") if isinstance(data, dict) else None
+    if version != SCHEMA_VERSION:
+        raise RecordError(
+            f"{file}: schema_version is {version!r}, this program reads {SCHEMA_VERSION}; "
+            "read it with the version of MintPilot that wrote it (under 'versions'), or fly the mission again"
+        )
+    try:
+        return MissionRecord.model_validate(data)
+    except ValidationError as error:
+        first = error.errors()[0]
+        place = ".".join(str(step) for step in first["loc"])
+        raise RecordError(
+            f"{file}: {place}: {first['msg']} ({error.error_count()} mistakes in all); "
+            "the record was changed or damaged: restore it or fly the mission again"
+        ) from error

@@ -1,0 +1,116 @@
+"""The mission report at the end of a run, on a terminal or in a log file."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from rich.console import Console, Group, RenderableType
+from rich.table import Table
+from rich.text import Text
+
+from mintpilot.core.mission import Outcome
+from mintpilot.core.query import Reply
+from mintpilot.recording.record import GapRecord, MissionRecord, QuestionRecord
+from mintpilot.recording.report import REPLY_WORDS, number
+from mintpilot.recording.tree_drawing import tree_text
+from mintpilot.recording.words import OUTCOME_WORDS, STOP_WORDS, printable
+
+WIDTH = 100
+"""Columns that the report fits into."""
+_STYLES = {Reply.YES: "bold green", Reply.NO: "bold red", Reply.UNSURE: "bold yellow", Reply.TIMEOUT: "bold yellow"}
+
+
+def print_report(record: MissionRecord, console: Console) -> None:
+    """Prints the mission in short form, at most 100 columns wide.
+
+    Without a terminal the console writes plain text; control characters in words from outside are taken out.
+    """
+    width = min(console.width, WIDTH)
+    for part in (_head(record), _saw(record), _gaps(record), _asked(record), _decided(record), _flown(record)):
+        console.print(part, width=width)
+
+
+def _head(record: MissionRecord) -> RenderableType:
+    style = "bold green" if record.outcome is Outcome.SUCCESS else "bold red"
+    lines = [Text(OUTCOME_WORDS[record.outcome].upper(), style), _plain(record.reason)]
+    if record.instruction:
+        lines.append(_plain(f"Order: {record.instruction}", "dim"))
+    return Group(Text(), *lines)
+
+
+def _saw(record: MissionRecord) -> RenderableType:
+    kinds: dict[str, int] = {}
+    for seen in record.seen:
+        name = seen.state if seen.kind == "object" else seen.kind
+        kinds[name] = kinds.get(name, 0) + 1
+    things = ", ".join(f"{count} {name}" for name, count in sorted(kinds.items()))
+    return _section("What it saw", [_plain(f"{record.frames} pictures: {things or 'nothing was found'}.")])
+
+
+def _gaps(record: MissionRecord) -> RenderableType:
+    if not record.gaps:
+        return _section("What it did not know", [Text("Nothing that bears on the task was unknown.")])
+    return _section("What it did not know", [line for gap in record.gaps for line in _gap(gap)])
+
+
+def _gap(gap: GapRecord) -> Iterator[Text]:
+    state = "asked" if gap.asked else "mattered, not asked" if gap.relevant else "irrelevant"
+    state = "not decided" if gap.relevant is None and not gap.asked else state
+    yield Text.assemble(
+        ("• ", "bold"), printable(gap.description), "  ", (f"[{state}]", "cyan" if gap.asked else "dim")
+    )
+    yield Text.assemble("  ", printable(gap.why))
+    worst = number(gap.cost_if_unfavourable_s, "s") if gap.cost_if_unfavourable_s is not None else "none"
+    figures = (
+        f"  best way {number(gap.cost_if_favourable_s, 's')} if as hoped, {worst} if not; "
+        f"{number(gap.divergence_m, 'm')} apart; asking gains {number(gap.gain_bits, 'bit', 2)}, "
+        f"saves {number(gap.regret_saved_s, 's')}"
+    )
+    yield Text(figures, "dim")
+
+
+def _asked(record: MissionRecord) -> RenderableType:
+    if not record.questions:
+        return _section("What it asked", [Text("Nothing.")])
+    return _section("What it asked", [line for q in record.questions for line in _question(q)])
+
+
+def _question(question: QuestionRecord) -> Iterator[Text]:
+    said = f"Order: {question.command.value}" if question.command else REPLY_WORDS[question.reply]
+    consequence = {Reply.YES: question.yes_means, Reply.NO: question.no_means}.get(question.reply, "")
+    yield _plain(f"? {question.text}", "bold")
+    arrow = f" → {printable(consequence)}" if consequence and question.command is None else ""
+    facts = f"  (after {number(question.latency_s, 's')}, {number(question.gain_bits, 'bit', 2)})"
+    yield Text.assemble("  ", (said, _STYLES[question.reply]), arrow, (facts, "dim"))
+
+
+def _decided(record: MissionRecord) -> RenderableType:
+    lines: list[Text] = []
+    if record.tree is not None and record.tree.children:
+        lines.extend(Text(line) for line in tree_text(record.tree, max_nodes=15).splitlines())
+    if record.certificate is not None:
+        lines.append(_plain(f"{STOP_WORDS[record.certificate.reason]} {record.certificate.text}"))
+    return _section("How it decided", lines or [Text("It was not decided.")])
+
+
+def _flown(record: MissionRecord) -> RenderableType:
+    flight = record.flight
+    table = Table.grid(padding=(0, 2))
+    table.add_row("planned", number(flight.planned_m, "m"), "flown", number(flight.flown_m, "m"))
+    table.add_row("time", number(flight.seconds, "s"), "off the path", number(flight.rms_error_m, "m RMS", 3))
+    timings = ", ".join(f"{printable(stage)} {number(s, 's', 2)}" for stage, s in record.timings_s.items())
+    lines: list[RenderableType] = [table]
+    if timings:
+        lines.append(Text(f"Computing and waiting: {timings}", "dim"))
+    lines.extend(_plain(f"! {notice.text}", "yellow") for notice in record.notices)
+    if record.run_dir:
+        lines.append(Text(f"Report: {printable(record.run_dir)}/report.html", "bold", overflow="fold"))
+    return _section("What it flew", lines)
+
+
+def _section(title: str, lines: list[RenderableType] | list[Text]) -> RenderableType:
+    return Group(Text(), Text(title, "bold underline"), *lines)
+
+
+def _plain(text: str, style: str = "") -> Text:
+    return Text(printable(text), style)

@@ -1,0 +1,83 @@
+"""Assumptions, reasons and endings in plain words."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from mintpilot.core.gap import BLOCKED, PASSABLE, PRESENT, Assumptions, GapKind, KnowledgeGap
+from mintpilot.core.mission import Outcome
+from mintpilot.core.tree import LeafReason, StopReason
+
+LEAF_WORDS: dict[LeafReason, str] = {
+    LeafReason.RELIES_ON_NOTHING: "depends on nothing unknown",
+    LeafReason.CAUTIOUS_IS_GOOD_ENOUGH: "the safe way is good enough",
+    LeafReason.TARGET_IS_CLEAR_ENOUGH: "the goal is clear enough",
+    LeafReason.INFEASIBLE: "nothing safe can be flown",
+    LeafReason.NOT_EXPANDED: "not worked out any further",
+}
+"""Why a branch of the tree ends."""
+
+STOP_WORDS: dict[StopReason, str] = {
+    StopReason.NO_GAPS: "Nothing that bears on the task is unknown.",
+    StopReason.ONE_CLASS: "One way to fly is as good as certain.",
+    StopReason.GOOD_FOR_ALL: "One way to fly is good whatever is still unknown.",
+    StopReason.NO_GAIN: "No further question would change the flight.",
+    StopReason.BUDGET: "All questions that were allowed have been asked.",
+    StopReason.SILENCE: "Nobody answered.",
+    StopReason.INFEASIBLE: "Nothing can be flown, whatever the answers would be.",
+    StopReason.NEVER_ASKS: "This strategy does not ask.",
+}
+"""Why the asking stopped."""
+
+OUTCOME_WORDS: dict[Outcome, str] = {
+    Outcome.SUCCESS: "Mission accomplished",
+    Outcome.COLLISION: "Failed: the drone touched something",
+    Outcome.TOXIC_SMOKE: "Failed: the drone flew into toxic smoke",
+    Outcome.ENDURANCE: "Failed: the flight time ran out",
+    Outcome.LEFT_VOLUME: "Failed: the drone left its allowed space",
+    Outcome.WRONG_TARGET: "Failed: the wrong thing was reached",
+    Outcome.PERSON_MISSED: "Failed: somebody was not found",
+    Outcome.NO_SAFE_PLAN: "Not flown: no safe way was known",
+    Outcome.ABORTED: "Ended before it was finished",
+    Outcome.VEHICLE_FAILED: "Failed: the vehicle or its link failed",
+    Outcome.NOT_REACHED: "Failed: not every goal was reached",
+}
+"""How a mission ended."""
+
+
+def say(gap: KnowledgeGap, values: Iterable[str]) -> str:
+    """What it means that the gap has one of these values, as a clause without a full stop."""
+    wanted = [value for value in gap.values if value in set(values)]
+    if gap.kind is GapKind.OBSTACLE and len(wanted) == 1 and wanted[0] in (PASSABLE, BLOCKED):
+        return f"{gap.description} {'can' if wanted[0] == PASSABLE else 'cannot'} be flown through"
+    if gap.kind is GapKind.PRESENCE and len(wanted) == 1:
+        return f"{'somebody' if wanted[0] == PRESENT else 'nobody'} is in {gap.description}"
+    if gap.kind is GapKind.TARGET:
+        return (
+            f"\N{LEFT DOUBLE QUOTATION MARK}{gap.subject}\N{RIGHT DOUBLE QUOTATION MARK} means {_any_of(gap, wanted)}"
+        )
+    return f"{gap.description}: {_any_of(gap, wanted)}"
+
+
+def say_assumptions(given: Assumptions, gaps: Iterable[KnowledgeGap]) -> str:
+    """All assumptions as one line; those about gaps that are not given are said by their ids."""
+    known = {gap.id: gap for gap in gaps}
+    clauses = [
+        say(known[gap_id], values) if gap_id in known else f"{gap_id}: {' or '.join(sorted(values))}"
+        for gap_id, values in given.items
+        if gap_id not in known or len(values) < len(known[gap_id].values)
+    ]
+    return "; ".join(clauses) or "nothing assumed"
+
+
+def printable(text: str) -> str:
+    """The text without control characters, which labels and answers from outside may carry."""
+    return "".join(character if character.isprintable() else " " for character in text)
+
+
+def _any_of(gap: KnowledgeGap, values: list[str]) -> str:
+    names = {c.id: c.description or c.id for c in gap.candidates}
+    words = [names.get(value, value) for value in values]
+    if len(words) > 4:
+        words = [*words[:3], f"{len(words) - 3} others"]
+    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} or {words[-1]}" if words else "nothing"
