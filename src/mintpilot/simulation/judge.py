@@ -1,0 +1,182 @@
+"""How a simulated mission really went: the truth of the scene against what the drone did."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from mintpilot.core.geometry import Box, Floats, Vec3
+from mintpilot.core.mission import Outcome, Verdict
+from mintpilot.core.plan import Stop
+from mintpilot.core.ports import Judge
+from mintpilot.core.task import Action
+from mintpilot.simulation.scene import FlightRules, Person, Scene, Solid
+
+BODY_M = 1.7
+"""Length of a person lying down."""
+
+
+class SceneJudge(Judge):
+    """Judges by true positions, touches and acts, which a simulator feeds in order.
+
+    The mission's clock (endurance, late solids) stands still until `begin_mission`: a survey before it is flown on
+    another battery. Everything else counts from the start. The first failure stays.
+
+    Args:
+        scene: the truth.
+        rules: what ends a flight, and how near is near enough.
+    """
+
+    def __init__(self, scene: Scene, rules: FlightRules) -> None:
+        self._scene = scene
+        self._rules = rules
+        self._failure: Verdict | None = None
+        self._mission_start_s = math.inf
+        self._goals_left = list(scene.goal_objects)
+        self._carried = ""
+        self._found: set[str] = set()
+
+    def begin_mission(self, time_s: float) -> None:
+        """The mission's clock runs from this moment of the vehicle's clock on, with a fresh battery."""
+        self._mission_start_s = time_s
+
+    def mission_s(self, time_s: float) -> float:
+        """Seconds of mission flight at that time of the vehicle's clock; below 0 before the mission."""
+        return time_s - self._mission_start_s
+
+    def endurance_left_s(self, time_s: float) -> float:
+        """Flight time that is left, seconds, not below 0."""
+        return max(self._rules.endurance_s - max(self.mission_s(time_s), 0.0), 0.0)
+
+    def first_failure(self, time_s: Floats, position_m: Floats) -> tuple[int, Verdict] | None:
+        """The first sample of a flight that fails the mission, and why; changes nothing.
+
+        Args:
+            time_s: (n,) vehicle's clock.
+            position_m: (n, 3) true positions of the drone's centre.
+        """
+        found: list[tuple[int, Verdict]] = []
+        for smoke in self._scene.smokes:
+            if smoke.toxic:
+                inside = smoke.extent_m.contains(position_m)
+                self._note(found, inside, Outcome.TOXIC_SMOKE, f"it flew into the toxic smoke '{smoke.id}'")
+        outside = ~self._scene.volume.contains(position_m)
+        self._note(found, outside, Outcome.LEFT_VOLUME, "it left the volume in which it may fly")
+        spent = time_s - self._mission_start_s > self._rules.endurance_s
+        reason = f"its endurance of {self._rules.endurance_s:g} s was spent in the air"
+        self._note(found, spent, Outcome.ENDURANCE, reason)
+        return min(found, key=lambda item: item[0]) if found else None
+
+    def observe(self, time_s: Floats, position_m: Floats) -> int | None:
+        """As `first_failure`, and the failure counts. Returns the index of the failing sample, if any."""
+        first = self.first_failure(time_s, position_m)
+        if first is None:
+            return None
+        self.fail(first[1])
+        return first[0]
+
+    def fail(self, verdict: Verdict) -> None:
+        """Something ended the mission; only the first such thing counts."""
+        self._failure = self._failure or verdict
+
+    def touched(self, what: str) -> None:
+        """The drone touched something: any contact is a collision."""
+        self.fail(collision(what))
+
+    def hovered(self, position_m: Vec3) -> None:
+        """The drone came to rest here: people in the open within reach count as found."""
+        for person in self._scene.persons:
+            if _distance_to_person(position_m, person) <= self._rules.person_reach_m:
+                self._found.add(person.id)
+
+    def acted(self, stop: Stop, position_m: Vec3) -> None:
+        """The drone did what the stop is for, from this position, and stayed its time.
+
+        What it reaches for is the object nearest to the stop's site; of a stop with several sites, to the one nearest
+        to the drone. Only solids of the kinds among the goal objects count as objects.
+        """
+        self.hovered(position_m)
+        if stop.action is Action.LOOK:
+            for room in self._scene.rooms:
+                near = math.dist(position_m, room.viewpoint_m) <= self._rules.look_reach_m
+                if near and room.occupant is not None:
+                    self._found.add(room.occupant.id)
+            return
+        target = self._target(stop, position_m)
+        if stop.action is Action.PICK:
+            self._picked(target, position_m)
+            return
+        if stop.action is Action.DELIVER:
+            self._carried = ""
+        if target is not None and self._goals_left and target.id == self._goals_left[0]:
+            if box_distance(target.extent_m, position_m) <= self._rules.pick_reach_m:
+                self._goals_left.pop(0)
+
+    def verdict(self) -> Verdict | None:
+        """The failure that has happened, if any."""
+        return self._failure
+
+    def final(self) -> Verdict:
+        """The verdict at the end: the first failure, else somebody missed, else something not reached, else success."""
+        if self._failure is not None:
+            return self._failure
+        missed = [p.id for p in self._wanted_people() if p.id not in self._found]
+        if missed:
+            return Verdict(outcome=Outcome.PERSON_MISSED, reason=f"nobody found {_listed(missed)}, who needs help")
+        if self._goals_left:
+            return Verdict(outcome=Outcome.NOT_REACHED, reason=f"it never got to {_listed(self._goals_left)}")
+        return Verdict(outcome=Outcome.SUCCESS, reason="everything was reached, nothing was touched")
+
+    def _picked(self, target: Solid | None, position_m: Vec3) -> None:
+        wanted = self._goals_left[0] if self._goals_left else ""
+        if target is None or target.id != wanted:
+            taken = f"'{target.id}'" if target is not None else "nothing that can be taken"
+            meant = f"'{wanted}' was meant" if wanted else "nothing more was to be taken"
+            self.fail(Verdict(outcome=Outcome.WRONG_TARGET, reason=f"it reached for {taken}, but {meant}"))
+            return
+        gap = box_distance(target.extent_m, position_m)
+        if gap > self._rules.pick_reach_m:
+            reason = f"it reached for '{wanted}' from {gap:.2f} m away, farther than {self._rules.pick_reach_m:g} m"
+            self.fail(Verdict(outcome=Outcome.WRONG_TARGET, reason=reason))
+            return
+        self._carried = self._goals_left.pop(0)
+
+    def _target(self, stop: Stop, position_m: Vec3) -> Solid | None:
+        kinds = {s.kind for s in self._scene.solids if s.id in self._scene.goal_objects}
+        objects = [s for s in self._scene.solids if s.kind in kinds]
+        places = [site.position_m for site in stop.sites] or [position_m]
+        place = min(places, key=lambda p: math.dist(p, position_m))
+        return min(objects, key=lambda s: (box_distance(s.extent_m, place), s.id), default=None)
+
+    def _wanted_people(self) -> list[Person]:
+        inside = [room.occupant for room in self._scene.rooms if room.occupant is not None]
+        return [p for p in (*self._scene.persons, *inside) if p.must_be_found]
+
+    @staticmethod
+    def _note(found: list[tuple[int, Verdict]], flags: np.ndarray, outcome: Outcome, reason: str) -> None:
+        if flags.any():
+            found.append((int(np.argmax(flags)), Verdict(outcome=outcome, reason=reason)))
+
+
+def collision(what: str) -> Verdict:
+    """The verdict on touching something."""
+    return Verdict(outcome=Outcome.COLLISION, reason=f"it touched {what}")
+
+
+def box_distance(box: Box, point_m: Vec3) -> float:
+    """Metres from a point to the nearest point of a box; 0 inside."""
+    gaps = (max(lo - x, 0.0, x - hi) for lo, x, hi in zip(box.lo_m, point_m, box.hi_m, strict=True))
+    return math.hypot(*gaps)
+
+
+def _distance_to_person(point_m: Vec3, person: Person) -> float:
+    """Metres to the nearest point of the body's axis."""
+    axis = np.array([math.cos(person.yaw_rad), math.sin(person.yaw_rad), 0.0])
+    off = np.asarray(point_m) - person.position_m
+    along = float(np.clip(off @ axis, -BODY_M / 2, BODY_M / 2))
+    return float(np.linalg.norm(off - along * axis))
+
+
+def _listed(names: list[str]) -> str:
+    return ", ".join(f"'{name}'" for name in names)

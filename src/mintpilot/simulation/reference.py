@@ -1,0 +1,104 @@
+"""What a simulator follows: a trajectory at any times, its way to a stop when interrupted, and whether it may start."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from mintpilot.core.errors import DeviceError, InputError
+from mintpilot.core.geometry import Floats, Vec3
+from mintpilot.core.trajectory import Trajectory
+
+START_TOLERANCE_M = 0.5
+"""A trajectory must begin at most this far from the vehicle, metres."""
+BRAKING_MPS2 = 2.0
+"""How fast an interrupted flight loses its speed."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Reference:
+    """Where the drone should be at n times."""
+
+    time_s: Floats
+    """(n,), on the trajectory's clock."""
+    position_m: Floats
+    """(n, 3)."""
+    velocity_mps: Floats
+    """(n, 3)."""
+    acceleration_mps2: Floats
+    """(n, 3)."""
+    yaw_rad: Floats
+    """(n,)."""
+
+
+def check_start(trajectory: Trajectory, position_m: Vec3) -> None:
+    """Refuses what cannot be followed from here.
+
+    Raises:
+        InputError: the trajectory is empty, malformed, not finite, or its times do not ascend.
+        DeviceError: it begins farther than `START_TOLERANCE_M` from the vehicle.
+    """
+    n = len(trajectory.time_s)
+    if n == 0:
+        raise InputError("the trajectory is empty: give at least one sample, where the vehicle is")
+    shapes = [
+        ("position_m", trajectory.position_m, (n, 3)),
+        ("velocity_mps", trajectory.velocity_mps, (n, 3)),
+        ("acceleration_mps2", trajectory.acceleration_mps2, (n, 3)),
+        ("yaw_rad", trajectory.yaw_rad, (n,)),
+    ]
+    for name, array, shape in shapes:
+        if array.shape != shape:
+            raise InputError(f"the trajectory's {name} has shape {array.shape}: {n} times need {shape}")
+    for name, array, _ in (("time_s", trajectory.time_s, (n,)), *shapes):
+        if not np.isfinite(array).all():
+            sample = int(np.argmin(np.isfinite(array.reshape(n, -1)).all(axis=1)))
+            raise InputError(f"the trajectory's {name} is not finite at sample {sample}: plan it again")
+    if (np.diff(trajectory.time_s) <= 0).any():
+        raise InputError("the trajectory's times do not ascend: give each sample a later time than the one before")
+    gap = float(np.linalg.norm(trajectory.position_m[0] - np.asarray(position_m)))
+    if gap > START_TOLERANCE_M:
+        start = tuple(round(float(x), 2) for x in trajectory.position_m[0])
+        here = tuple(round(float(x), 2) for x in position_m)
+        raise DeviceError(
+            f"the trajectory begins at {start}, {gap:.2f} m from the vehicle at {here}; at most {START_TOLERANCE_M} m "
+            "is allowed: plan again from the vehicle's place"
+        )
+
+
+def sampled(trajectory: Trajectory, time_s: Floats) -> Reference:
+    """The trajectory at these times (n,) after its first sample; it hovers before and after."""
+    at = np.asarray(time_s, float) + trajectory.time_s[0]
+    return Reference(
+        time_s=np.asarray(time_s, float),
+        position_m=_between(at, trajectory.time_s, trajectory.position_m),
+        velocity_mps=_between(at, trajectory.time_s, trajectory.velocity_mps),
+        acceleration_mps2=_between(at, trajectory.time_s, trajectory.acceleration_mps2),
+        yaw_rad=np.interp(at, trajectory.time_s, trajectory.yaw_rad),
+    )
+
+
+def braked(trajectory: Trajectory, from_s: float, step_s: float) -> Reference:
+    """The way along the trajectory from ``from_s`` to a stop, in steps; the first sample is at ``from_s``.
+
+    The trajectory's own clock is slowed down evenly to a halt, so that the drone stays on the curve.
+    """
+    speed = float(np.linalg.norm(sampled(trajectory, np.array([from_s])).velocity_mps))
+    halt_s = max(speed / BRAKING_MPS2, step_s)
+    elapsed = step_s * np.arange(int(np.ceil(halt_s / step_s)) + 1)
+    rate = np.clip(1 - elapsed / halt_s, 0.0, 1.0)
+    slowed = np.minimum(elapsed, halt_s)
+    along = sampled(trajectory, from_s + slowed - slowed**2 / (2 * halt_s))
+    braking = np.where(rate > 0, 1 / halt_s, 0.0)[:, None]
+    return Reference(
+        time_s=from_s + elapsed,
+        position_m=along.position_m,
+        velocity_mps=along.velocity_mps * rate[:, None],
+        acceleration_mps2=along.acceleration_mps2 * rate[:, None] ** 2 - along.velocity_mps * braking,
+        yaw_rad=along.yaw_rad,
+    )
+
+
+def _between(at: Floats, time_s: Floats, rows: Floats) -> Floats:
+    return np.stack([np.interp(at, time_s, rows[:, axis]) for axis in range(3)], axis=1)
