@@ -1,0 +1,160 @@
+"""The public Python API: think about a mission, fly it, check its file."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import TypeAlias
+
+from mintpilot.assembly.crews import Choices, VehicleChoice, crew_for, scripted_operator, thinking_parts
+from mintpilot.assembly.deliberation import DeliberationReport, deliberation_report
+from mintpilot.assembly.worlds import World, build_world
+from mintpilot.core.errors import UnknownNameError
+from mintpilot.core.events import Event
+from mintpilot.core.ports import Ask, Operator, Recorder
+from mintpilot.elicitation.wording import word_question
+from mintpilot.interaction.scripted import ScriptedOperator
+from mintpilot.mission.account import first_accounts
+from mintpilot.mission.loop import RESERVE, fly_mission
+from mintpilot.mission.mind import Mind
+from mintpilot.mission.preview import preview
+from mintpilot.mission.reader import Problem, find_problems, read_mission
+from mintpilot.mission.schema import MissionFile
+from mintpilot.reasoning.belief import prior_belief
+from mintpilot.recording.in_memory import HistoryRecorder
+from mintpilot.recording.record import MissionRecord
+from mintpilot.recording.recorders import TeeRecorder
+from mintpilot.recording.run_folder import RunFolder
+
+Progress: TypeAlias = Callable[[Event], object]
+"""Called with every event of a mission, as it happens."""
+
+
+def check_mission(path: str | Path) -> list[Problem]:
+    """Every mistake in that mission file, with its place and what to write instead; empty when it is sound."""
+    return find_problems(path)
+
+
+def plan_mission(
+    mission: str | Path | MissionFile, *, strategy: str = "mint", seed: int | None = None, base: Path | None = None
+) -> DeliberationReport:
+    """Deliberates on a mission without flying it, on a perfect survey's map or on the map that it gives.
+
+    Args:
+        mission: a mission file's path, or its contents.
+        strategy: name of the method of asking.
+        seed: overrides the seed in the file.
+        base: folder that file names in the mission are relative to; default: that of the file, or the present one.
+
+    Raises:
+        MissionError: the file has mistakes.
+        InfeasibleError: nothing can be flown, whatever the answers are.
+        UnknownNameError: nobody registered that strategy.
+    """
+    file, folder = _opened(mission, base)
+    world = build_world(file, base=folder, seed=seed)
+    parts = thinking_parts(world, Choices(strategy=strategy))
+    begun = time.perf_counter()
+    seen = preview(
+        Mind(map=world.map, belief=prior_belief(())),
+        parts,
+        start_m=world.mission.start_m,
+        endurance_s=world.mission.limits.endurance_s * (1 - RESERVE),
+    )
+    seconds = time.perf_counter() - begun
+    decision = seen.first.decision
+    question = None
+    if isinstance(decision, Ask):
+        spoken_of = tuple(g for g in seen.first.findings.gaps if g.id in decision.scored.query.gap_ids)
+        question = word_question(decision.scored.query, spoken_of, decision.mint)
+    return deliberation_report(
+        seen,
+        mission=file.name,
+        strategy=strategy,
+        accounts=first_accounts(seen.first, world.mission.asking, parts.metric),
+        question=question,
+        seconds=seconds,
+    )
+
+
+def run_mission(
+    mission: str | Path | MissionFile,
+    *,
+    operator: Operator | str = "scripted",
+    vehicle: str = "mujoco",
+    strategy: str = "mint",
+    seed: int | None = None,
+    out: Path | None = None,
+    progress: Progress | None = None,
+    base: Path | None = None,
+) -> MissionRecord:
+    """Flies a mission and keeps what happened.
+
+    Args:
+        mission: a mission file's path, or its contents.
+        operator: who answers; ``"scripted"``: one that knows the truth, with the errors that the file states.
+        vehicle: ``"mujoco"`` or ``"kinematic"``; a mission on a given map is always flown by the latter.
+        strategy: name of the method of asking.
+        seed: overrides the seed in the file.
+        out: the run folder; None keeps nothing on disk but returns the record.
+        progress: told about every event.
+        base: folder that file names in the mission are relative to; default: that of the file, or the present one.
+
+    Returns:
+        The record. How the mission ended is `MissionRecord.outcome`; an ending short of success is no exception.
+
+    Raises:
+        InputError: the mission, or a name, is wrong.
+        RecordError: the run folder cannot be written.
+        MissingPartError: MuJoCo is chosen but not installed.
+    """
+    file, folder = _opened(mission, base)
+    world = build_world(file, base=folder, seed=seed)
+    choices = Choices(strategy=strategy, vehicle=_vehicle(vehicle))
+    person = _operator(operator, world, file)
+    keeper = RunFolder(out) if out is not None else None
+    recorder = HistoryRecorder()
+    recorders: list[Recorder] = [keeper if keeper is not None else recorder]
+    if progress is not None:
+        recorders.append(_Told(progress))
+    if keeper is None:
+        with crew_for(world, choices, operator=person, recorder=TeeRecorder(*recorders)) as crew:
+            fly_mission(crew)
+        return recorder.close()
+    with keeper, crew_for(world, choices, operator=person, recorder=TeeRecorder(*recorders)) as crew:
+        fly_mission(crew)
+    return keeper.close()
+
+
+class _Told(Recorder):
+    """Passes events on to a function."""
+
+    def __init__(self, progress: Progress) -> None:
+        self._progress = progress
+
+    def record(self, event: Event) -> None:
+        self._progress(event)
+
+
+def _opened(mission: str | Path | MissionFile, base: Path | None) -> tuple[MissionFile, Path]:
+    if isinstance(mission, MissionFile):
+        return mission, base or Path.cwd()
+    path = Path(mission)
+    return read_mission(path), base or path.parent
+
+
+def _vehicle(name: str) -> VehicleChoice:
+    try:
+        return VehicleChoice(name)
+    except ValueError:
+        raise UnknownNameError("vehicle", name, list(VehicleChoice)) from None
+
+
+def _operator(operator: Operator | str, world: World, file: MissionFile) -> Operator:
+    if not isinstance(operator, str):
+        return operator
+    if operator != "scripted":
+        raise UnknownNameError("operator", operator, ["scripted"])
+    scripted: ScriptedOperator = scripted_operator(world, file.operator)
+    return scripted

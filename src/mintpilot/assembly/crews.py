@@ -1,0 +1,165 @@
+"""From a world to a crew: vehicle, eyes, strategy, operator, recorder, ready for the loop."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from contextlib import AbstractContextManager, ExitStack
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+
+from mintpilot.assembly.registry import load
+from mintpilot.assembly.worlds import World
+from mintpilot.core.geometry import GridFrame
+from mintpilot.core.ports import Operator, Perception, Recorder
+from mintpilot.core.semantic_map import SemanticMap
+from mintpilot.interaction.scripted import ScriptedOperator
+from mintpilot.mapping.builder import MapBuilder
+from mintpilot.mission.eyes import CameraEyes, Eyes, FixedEyes
+from mintpilot.mission.loop import Crew
+from mintpilot.mission.mind import Thinking
+from mintpilot.mission.schema import OperatorSpec
+from mintpilot.mission.survey import survey
+from mintpilot.simulation.kinematic import KinematicSimulator
+from mintpilot.simulation.mujoco_vehicle import MujocoSimulator
+from mintpilot.simulation.scene_map import SceneEyes
+
+
+class VehicleChoice(StrEnum):
+    """What the mission is flown with."""
+
+    MUJOCO = "mujoco"
+    """Four rotors, physics, rendered RGB-D: the map is made by a survey flight."""
+    KINEMATIC = "kinematic"
+    """Follows trajectories exactly; the map is what a perfect survey would show."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Choices:
+    """What a command line or a caller chooses."""
+
+    strategy: str = "mint"
+    vehicle: VehicleChoice = VehicleChoice.MUJOCO
+    planner: str = "grid"
+    perception: str = "geometric"
+    camera_size: tuple[int, int] = (320, 240)
+
+
+def thinking_parts(world: World, choices: Choices) -> Thinking:
+    """The parts that deliberation is done with.
+
+    Raises:
+        UnknownNameError: a strategy, objective, metric or planner that nobody registered.
+    """
+    asking = world.mission.asking
+    return Thinking(
+        mission=world.mission,
+        task=world.task,
+        planner=load("planner", choices.planner)(),
+        strategy=load("strategy", choices.strategy)(),
+        metric=load("metric", asking.impact_metric)(),
+        objective=load("objective", asking.objective)(),
+        groups=world.groups,
+    )
+
+
+def scripted_operator(world: World, spec: OperatorSpec) -> ScriptedOperator:
+    """An operator that knows the truth of the world."""
+    return ScriptedOperator(
+        world.truth,
+        rng=np.random.default_rng([world.seed, 7]),
+        answer_error=spec.answer_error,
+        unsure_rate=spec.unsure,
+        silence_rate=spec.silence,
+        latency_s=spec.latency_s,
+    )
+
+
+def crew_for(
+    world: World, choices: Choices, *, operator: Operator, recorder: Recorder
+) -> AbstractContextManager[Crew]:
+    """A crew, as a context that closes the simulator in the end.
+
+    Raises:
+        MissingPartError: MuJoCo is chosen but not installed.
+    """
+    return _CrewContext(world, choices, operator, recorder)
+
+
+class _CrewContext(AbstractContextManager[Crew]):
+    def __init__(self, world: World, choices: Choices, operator: Operator, recorder: Recorder) -> None:
+        self._world, self._choices, self._operator, self._recorder = world, choices, operator, recorder
+        self._stack = ExitStack()
+
+    def __enter__(self) -> Crew:
+        world, choices = self._world, self._choices
+        parts = thinking_parts(world, choices)
+        if choices.vehicle is VehicleChoice.MUJOCO and not world.is_map:
+            simulator = MujocoSimulator(
+                world.scene, world.rules, seed=world.seed, camera_size=choices.camera_size
+            )
+            self._stack.callback(simulator.close)
+            perception: Perception = load("perception", choices.perception)()
+            builder = map_builder(world)
+            eyes = CameraEyes(camera=simulator, perception=perception, builder=builder, recorder=self._recorder)
+            return self._crew(parts, simulator, eyes, self._surveyed(simulator, eyes), watch_map=True)
+        kinematic = KinematicSimulator(world.scene, world.rules, seed=world.seed)
+        seen: Eyes = FixedEyes(world.map) if world.is_map else SceneEyes(world.scene, world.map, kinematic.state)
+        changes = any(solid.appears_s > 0 for solid in world.scene.solids)
+
+        def given() -> SemanticMap:
+            kinematic.begin_mission()
+            return world.map
+
+        return self._crew(parts, kinematic, seen, given, watch_map=changes)
+
+    def __exit__(self, *_: object) -> None:
+        self._stack.close()
+
+    def _surveyed(self, simulator: MujocoSimulator, eyes: CameraEyes) -> Callable[[], SemanticMap]:
+        def fly() -> SemanticMap:
+            mission = self._world.mission
+            if mission.survey is None:
+                first = eyes.look(None)
+            else:
+                first = survey(mission, mission.survey, vehicle=simulator, eyes=eyes, recorder=self._recorder)
+            simulator.begin_mission()
+            return first
+
+        return fly
+
+    def _crew(
+        self,
+        parts: Thinking,
+        simulator: MujocoSimulator | KinematicSimulator,
+        eyes: Eyes,
+        first_map: Callable[[], SemanticMap],
+        *,
+        watch_map: bool,
+    ) -> Crew:
+        return Crew(
+            thinking=parts,
+            vehicle=simulator,
+            eyes=eyes,
+            operator=self._operator,
+            recorder=self._recorder,
+            survey=first_map,
+            judge=simulator,
+            watch_map=watch_map,
+            strategy_name=self._choices.strategy,
+            seed=self._world.seed,
+        )
+
+
+def map_builder(world: World) -> MapBuilder:
+    """A builder on the lattice of the world's map."""
+    mission = world.mission
+    frame: GridFrame = world.map.frame
+    return MapBuilder(
+        frame,
+        limits=mission.limits,
+        volume=mission.volume,
+        prior_passable=mission.prior_passable,
+        prior_occupied=mission.prior_occupied,
+    )

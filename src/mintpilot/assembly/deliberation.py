@@ -1,0 +1,168 @@
+"""What `mintpilot plan` reports: deliberation without a flight."""
+
+from __future__ import annotations
+
+from pydantic import BaseModel, ConfigDict
+
+from mintpilot.core.gap import Assumptions, KnowledgeGap
+from mintpilot.core.ports import Ask, Fly
+from mintpilot.core.query import Question
+from mintpilot.core.tree import GapAccount, Mint
+from mintpilot.mission.preview import Preview
+from mintpilot.recording.record import TreeRecord
+from mintpilot.recording.tree_data import tree_record
+from mintpilot.recording.tree_drawing import tree_text
+
+SCHEMA_VERSION = 1
+
+
+class _Report(BaseModel):
+    model_config = ConfigDict(frozen=True, extra="forbid", ser_json_inf_nan="null")
+
+
+class GapReport(_Report):
+    """One gap, with what is known of its weight."""
+
+    id: str
+    kind: str
+    description: str
+    values: dict[str, float]
+    """Value → prior."""
+    critical: bool
+    """Whether the flight depends on it."""
+    why: str
+    """In one sentence, with the figures."""
+    cost_if_favourable_s: float | None
+    cost_if_unfavourable_s: float | None
+    divergence_m: float | None
+    entropy_bits: float
+    gain_bits: float
+    regret_saved_s: float
+
+
+class PlanClassReport(_Report):
+    """Joint hypotheses that lead to the same flight."""
+
+    cost_s: float | None
+    """Null: under these hypotheses nothing can be flown."""
+    probability: float
+    hypotheses: list[dict[str, list[str]]]
+    """Each: gap id → the values meant."""
+
+
+class QueryReport(_Report):
+    """The question that would be asked first."""
+
+    id: str
+    text: str
+    yes_means: str
+    no_means: str
+    gaps: list[str]
+    gain_bits: float
+    yes_probability: float
+    regret_saved_s: float
+
+
+class DeliberationReport(_Report):
+    """What the drone would ask now, and why."""
+
+    schema_version: int = SCHEMA_VERSION
+    mission: str
+    strategy: str
+    gaps: list[GapReport]
+    tree: TreeRecord | None
+    """Null for strategies that build none, and where there are no gaps."""
+    tree_text: str
+    """The same as text."""
+    plan_classes: list[PlanClassReport]
+    query: QueryReport | None
+    """Null when nothing needs to be asked."""
+    expected_questions: float
+    """Mean over the answers."""
+    expected_questions_complete: bool
+    """False: a lower bound, since the work was bounded."""
+    stop_reason: str | None
+    """Why nothing is asked, where nothing is; else null."""
+    certificate: str
+    """The stop reason with its numbers, as a sentence; empty while a question is open."""
+    plan_cost_s: float | None
+    """Seconds of the flight that would be flown now; null while a question is open or nothing can be flown."""
+    seconds: float
+    """How long the first deliberation took."""
+
+
+def deliberation_report(
+    preview: Preview,
+    *,
+    mission: str,
+    strategy: str,
+    accounts: tuple[GapAccount, ...],
+    question: Question | None,
+    seconds: float,
+) -> DeliberationReport:
+    """The report on a preview."""
+    decision = preview.first.decision
+    fly = decision if isinstance(decision, Fly) else None
+    gaps = {gap.id: gap for gap in preview.first.findings.gaps}
+    tree = tree_record(decision.mint, gaps.values()) if decision.mint else None
+    return DeliberationReport(
+        mission=mission,
+        strategy=strategy,
+        gaps=[_gap(gaps[account.gap_id], account) for account in accounts if account.gap_id in gaps],
+        tree=tree,
+        tree_text=tree_text(tree) if tree else "",
+        plan_classes=_classes(decision.mint),
+        query=_query(decision, question) if isinstance(decision, Ask) and question is not None else None,
+        expected_questions=preview.expected_questions,
+        expected_questions_complete=preview.complete,
+        stop_reason=str(fly.certificate.reason) if fly else None,
+        certificate=fly.certificate.text if fly else "",
+        plan_cost_s=fly.plan.cost_s if fly and fly.plan else None,
+        seconds=seconds,
+    )
+
+
+def _gap(gap: KnowledgeGap, account: GapAccount) -> GapReport:
+    return GapReport(
+        id=gap.id,
+        kind=str(gap.kind),
+        description=gap.description,
+        values=dict(zip(gap.values, gap.prior, strict=True)),
+        critical=account.relevant,
+        why=account.why,
+        cost_if_favourable_s=account.cost_if_favourable_s,
+        cost_if_unfavourable_s=account.cost_if_unfavourable_s,
+        divergence_m=account.divergence_m,
+        entropy_bits=account.entropy_bits,
+        gain_bits=account.gain_bits,
+        regret_saved_s=account.regret_saved_s,
+    )
+
+
+def _classes(mint: Mint | None) -> list[PlanClassReport]:
+    return [
+        PlanClassReport(
+            cost_s=c.plan.cost_s if c.plan else None,
+            probability=c.probability,
+            hypotheses=[_hypothesis(given) for given in c.given],
+        )
+        for c in (mint.classes if mint else ())
+    ]
+
+
+def _hypothesis(given: Assumptions) -> dict[str, list[str]]:
+    return {gap: sorted(values) for gap, values in given.items}
+
+
+def _query(ask: Ask, question: Question) -> QueryReport:
+    scored = ask.scored
+    return QueryReport(
+        id=scored.query.id,
+        text=question.text,
+        yes_means=question.yes_means,
+        no_means=question.no_means,
+        gaps=list(scored.query.gap_ids),
+        gain_bits=scored.gain_bits,
+        yes_probability=scored.yes_probability,
+        regret_saved_s=scored.regret_saved_s,
+    )

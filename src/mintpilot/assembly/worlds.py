@@ -1,0 +1,185 @@
+"""From a mission file to a world: mission, task, truth, and a scene to fly in or a map to think on."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from mintpilot.core.gap import CorrelationGroup, GapKind, KnowledgeGap
+from mintpilot.core.mission import Mission
+from mintpilot.core.ports import TruthOracle
+from mintpilot.core.semantic_map import SemanticMap
+from mintpilot.core.task import Task
+from mintpilot.language.instruction import parse_instruction
+from mintpilot.mission.schema import MissionFile
+from mintpilot.mission.schema_base import attributes_of, place_of
+from mintpilot.mission.schema_core import asking_of, correlations_of, limits_of, mission_of, task_of, truths_of
+from mintpilot.mission.schema_map import map_of
+from mintpilot.mission.schema_scene import ClosedRoomSpec, PersonSpec, SceneSpec
+from mintpilot.mission.schema_world import MapWorld, ScenarioWorld, SceneWorld
+from mintpilot.simulation.map_scene import scene_of_map
+from mintpilot.simulation.scenarios import make_scenario
+from mintpilot.simulation.scene import ClosedRoom, FlightRules, Person, Scene, Shape, Smoke, Solid
+from mintpilot.simulation.scene_map import map_of_scene
+from mintpilot.simulation.truth import SceneTruth
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class World:
+    """Everything about a mission's world."""
+
+    mission: Mission
+    task: Task
+    scene: Scene
+    """The truth to fly in."""
+    rules: FlightRules
+    truth: TruthOracle
+    """For scripted operators only."""
+    map: SemanticMap
+    """What a perfect survey would show, or the map that was given."""
+    is_map: bool
+    """True when the map was given: there is nothing to render or survey."""
+    seed: int
+    groups: tuple[CorrelationGroup, ...] = ()
+
+
+class DeclaredTruth(TruthOracle):
+    """Knows what a mission file declares under ``truth``."""
+
+    def __init__(self, truths: Mapping[str, str]) -> None:
+        self._truths = dict(truths)
+
+    def value_of(self, gap: KnowledgeGap) -> str | None:
+        """The declared value of the gap's subject; for one of several areas of a mask, that of the mask."""
+        for name in (gap.id, gap.subject, gap.subject.rpartition("-")[0]):
+            value = self._truths.get(name)
+            if value in gap.values:
+                return value
+        if gap.kind is GapKind.TARGET:
+            meant = [v for v in self._truths.values() if v in gap.values]
+            return meant[0] if len(meant) == 1 else None
+        return None
+
+
+def build_world(file: MissionFile, *, base: Path, seed: int | None) -> World:
+    """The world of a mission file.
+
+    Args:
+        file: the checked mission.
+        base: folder that file names in it are relative to.
+        seed: overrides the seed in the file.
+
+    Raises:
+        InputError: the instruction is not understood, or a map or scenario cannot be used.
+    """
+    world = file.world
+    drawn = seed if seed is not None else (world.seed or 0)
+    if isinstance(world, ScenarioWorld):
+        return _from_scenario(file, world, drawn)
+    if isinstance(world, SceneWorld):
+        return _from_scene(file, replace(scene_of(world.scene, file.name), seed=drawn), drawn)
+    return _from_map(file, world, base, drawn)
+
+
+def _from_scenario(file: MissionFile, world: ScenarioWorld, seed: int) -> World:
+    scenario = make_scenario(world.scenario, seed, world.parameters)
+    given = file.model_fields_set
+    limits = limits_of(file) if "vehicle" in given else scenario.mission.limits
+    if file.vehicle.endurance_s is None:
+        limits = replace(limits, endurance_s=scenario.mission.limits.endurance_s)
+    mission = replace(
+        scenario.mission,
+        name=file.name,
+        instruction=file.instruction,
+        limits=limits,
+        asking=asking_of(file) if "asking" in given else scenario.mission.asking,
+    )
+    if file.survey is not None:
+        surveyed = mission_of(file, start_m=mission.start_m, volume=mission.volume)
+        mission = replace(mission, survey=surveyed.survey, resolution_m=surveyed.resolution_m)
+    rules = replace(scenario.rules, endurance_s=limits.endurance_s)
+    return _assembled(file, mission, scenario.scene, rules, seed)
+
+
+def _from_scene(file: MissionFile, scene: Scene, seed: int) -> World:
+    mission = mission_of(file, start_m=scene.start_m, volume=scene.volume)
+    return _assembled(file, mission, scene, FlightRules(endurance_s=mission.limits.endurance_s), seed)
+
+
+def _assembled(file: MissionFile, mission: Mission, scene: Scene, rules: FlightRules, seed: int) -> World:
+    return World(
+        mission=mission,
+        task=task_of(file) or parse_instruction(mission.instruction),
+        scene=scene,
+        rules=rules,
+        truth=SceneTruth(scene),
+        map=map_of_scene(scene, mission.resolution_m),
+        is_map=False,
+        seed=seed,
+        groups=correlations_of(file),
+    )
+
+
+def _from_map(file: MissionFile, world: MapWorld, base: Path, seed: int) -> World:
+    map_ = map_of(world, base, file.priors)
+    start = place_of(world.start_m, world.height_m)
+    truths = truths_of(file)
+    mission = mission_of(file, start_m=start, volume=map_.frame.box)
+    scene = scene_of_map(map_, name=file.name, start_m=start, truths=truths)
+    return World(
+        mission=mission,
+        task=task_of(file, layer_m=world.height_m) or parse_instruction(mission.instruction),
+        scene=scene,
+        rules=FlightRules(radius_m=min(0.27, mission.limits.radius_m), endurance_s=mission.limits.endurance_s),
+        truth=DeclaredTruth(truths),
+        map=map_,
+        is_map=True,
+        seed=seed,
+        groups=correlations_of(file),
+    )
+
+
+def scene_of(spec: SceneSpec, name: str) -> Scene:
+    """The explicit scene of a mission file."""
+    return Scene(
+        name=name,
+        volume=spec.volume.box(),
+        start_m=spec.start_m,
+        solids=tuple(
+            Solid(
+                id=s.id,
+                kind=s.kind,
+                extent_m=s.extent_m.box(),
+                shape=Shape(s.shape),
+                colour=s.colour,
+                attributes=attributes_of(s.attributes),
+                appears_s=s.appears_s,
+            )
+            for s in spec.solids
+        ),
+        smokes=tuple(
+            Smoke(id=s.id, extent_m=s.extent_m.box(), toxic=s.toxic, prior_safe=s.prior_safe) for s in spec.smokes
+        ),
+        rooms=tuple(_room_of(room) for room in spec.rooms),
+        persons=tuple(_person_of(person) for person in spec.persons),
+        goal_objects=tuple(spec.goal_objects),
+        seed=spec.seed,
+    )
+
+
+def _room_of(spec: ClosedRoomSpec) -> ClosedRoom:
+    return ClosedRoom(
+        id=spec.id,
+        extent_m=spec.extent_m.box(),
+        door_m=spec.door_m.box(),
+        viewpoint_m=spec.viewpoint_m,
+        occupant=_person_of(spec.occupant) if spec.occupant else None,
+        prior_occupied=spec.prior_occupied,
+        wall_m=spec.wall_m,
+    )
+
+
+def _person_of(spec: PersonSpec) -> Person:
+    return Person(id=spec.id, position_m=spec.position_m, yaw_rad=spec.yaw_rad, must_be_found=spec.must_be_found)
+
