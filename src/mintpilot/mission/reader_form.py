@@ -64,11 +64,15 @@ class FormWords:
         path: list[str | int] = []
         value: Any = self._value
         for step in loc:
-            here = isinstance(value, Mapping) or (isinstance(value, list) and isinstance(step, int))
-            if step in self._schema["$defs"] or not here:
+            if step in self._schema["$defs"]:
                 continue
+            if isinstance(value, Mapping):
+                value = value.get(str(step))
+            elif isinstance(value, list) and isinstance(step, int) and step < len(value):
+                value = value[step]
+            else:
+                break
             path.append(step)
-            value = value.get(step) if isinstance(value, Mapping) else value[int(step)]
         return tuple(path)
 
     def message(self, error: ErrorDetails) -> str:
@@ -76,6 +80,9 @@ class FormWords:
         kind, given = error["type"], error["input"]
         context = error.get("ctx", {})
         schema = self._schema_at(error["loc"])
+        if kind == "missing" and isinstance(error["loc"][-1], int):
+            count = len(self._schema_at(error["loc"][:-1]).get("prefixItems", ()))
+            return f"{show(given)} has {len(given)} numbers, {count} are wanted{_advice(schema)}"
         if kind == "missing":
             return f"'{error['loc'][-1]}' is missing{_advice(schema)}"
         if kind == "extra_forbidden":
@@ -121,7 +128,7 @@ class FormWords:
 
 def _advice(schema: Mapping[str, Any]) -> str:
     text = str(schema.get("description", "")).strip().replace("\n", " ").rstrip(".")
-    return f"; write {text[0].lower()}{text[1:]}" if text else ""
+    return f"; expected: {text[0].lower()}{text[1:]}" if text else ""
 
 
 def _quotes(schema: Mapping[str, Any], given: object) -> str:

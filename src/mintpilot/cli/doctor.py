@@ -1,0 +1,183 @@
+"""``mintpilot doctor``: what this machine has, what it lacks, how to get it. Works when parts are missing."""
+
+from __future__ import annotations
+
+import json
+import os
+import platform
+import shutil
+import subprocess
+import sys
+import tempfile
+from collections.abc import Callable, Iterator
+from dataclasses import asdict, dataclass
+from importlib.metadata import PackageNotFoundError, metadata, requires, version
+from importlib.util import find_spec
+from pathlib import Path
+
+from mintpilot.cli.exits import ExitCode
+
+GL_PACKAGES = "libegl1 libegl-mesa0 libgl1-mesa-dri libosmesa6"
+_DRAW = """
+import mujoco
+model = mujoco.MjModel.from_xml_string("<mujoco><worldbody><geom size='1'/></worldbody></mujoco>")
+renderer = mujoco.Renderer(model, 16, 16)
+data = mujoco.MjData(model)
+mujoco.mj_forward(model, data)
+renderer.update_scene(data)
+renderer.render()
+"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Finding:
+    """One thing that was looked at."""
+
+    name: str
+    ok: bool
+    needed: bool
+    """False for parts that only some commands need."""
+    found: str
+    advice: str = ""
+    """What to do where it is missing."""
+
+
+def examine(*, as_json: bool) -> ExitCode:
+    """Looks at everything and prints it; the exit code says whether something that is needed is missing."""
+    findings = list(look())
+    well = all(finding.ok or not finding.needed for finding in findings)
+    if as_json:
+        report = {"schema_version": 1, "ok": well, "findings": [asdict(finding) for finding in findings]}
+        print(json.dumps(report, ensure_ascii=False))
+    else:
+        for finding in findings:
+            mark = "ok     " if finding.ok else "MISSING" if finding.needed else "absent "
+            print(f"{mark}  {finding.name:<22} {finding.found}")
+            if not finding.ok and finding.advice:
+                print(f"{'':<9}→ {finding.advice}")
+        print("Everything that is needed is here." if well else "Something that is needed is missing: see MISSING.")
+    return ExitCode.SUCCESS if well else ExitCode.MISSING_PART
+
+
+def look(folder: Path | None = None) -> Iterator[Finding]:
+    """Every finding, in the order in which they are worth mending.
+
+    Args:
+        folder: where runs are to be written; default: the current one.
+    """
+    yield _python()
+    yield from _packages()
+    yield _simulator()
+    yield _drawing()
+    yield _writing(folder or Path.cwd())
+    yield _compiled()
+    yield _terminal()
+
+
+def _python() -> Finding:
+    release = platform.python_version()
+    return Finding(
+        name="Python",
+        ok=sys.version_info >= (3, 11),
+        needed=True,
+        found=f"{release} at {sys.executable}",
+        advice="install Python 3.11 or newer, then run make setup",
+    )
+
+
+def _packages() -> Iterator[Finding]:
+    """The packages that our own metadata asks for, by extra."""
+    for line in requires("mintpilot") or ():
+        requirement, _, marker = line.partition(";")
+        name = requirement.split(">")[0].split("<")[0].split("=")[0].split("[")[0].strip()
+        extra = marker.partition("extra ==")[2].strip().strip("'\"")
+        if extra in ("sim", "dev"):  # the simulator has its own finding; the developer's tools fly nothing
+            continue
+        yield _package(name, extra)
+    known = metadata("mintpilot").get_all("Provides-Extra") or []
+    yield Finding(name="extras", ok=True, needed=False, found=", ".join(sorted(known)))
+
+
+def _package(name: str, extra: str) -> Finding:
+    install = f"mintpilot[{extra}]" if extra else "mintpilot"
+    advice = f"python -m pip install '{install}', or make setup in a checkout"
+    label = f"{name} ({extra})" if extra else name
+    try:
+        return Finding(name=label, ok=True, needed=not extra, found=version(name))
+    except PackageNotFoundError:
+        return Finding(name=label, ok=False, needed=not extra, found="not installed", advice=advice)
+
+
+def _simulator() -> Finding:
+    found = _guess(lambda: version("mujoco")) if find_spec("mujoco") else ""
+    return Finding(
+        name="MuJoCo (sim)",
+        ok=bool(found),
+        needed=False,
+        found=found or "not installed: plan, check and --vehicle kinematic work without it",
+        advice="python -m pip install 'mintpilot[sim]', or make setup in a checkout",
+    )
+
+
+def _drawing() -> Finding:
+    """Whether a picture can be drawn off screen; tried in a process of its own, since a bad driver may crash."""
+    advice = f"sudo apt-get install {GL_PACKAGES}, then mintpilot doctor again"
+    if not find_spec("mujoco"):
+        return Finding(name="off-screen drawing", ok=False, needed=False, found="not tried: no MuJoCo", advice=advice)
+    backends = [os.environ["MUJOCO_GL"]] if os.environ.get("MUJOCO_GL") else ["egl", "osmesa"]
+    for backend in backends:
+        try:
+            done = subprocess.run(
+                [sys.executable, "-c", _DRAW],
+                env={**os.environ, "MUJOCO_GL": backend},
+                capture_output=True,
+                timeout=60,
+                check=False,
+            )
+        except (OSError, subprocess.TimeoutExpired):
+            continue
+        if done.returncode == 0:
+            use = "" if backend == "egl" else f"; set MUJOCO_GL={backend}"
+            return Finding(name="off-screen drawing", ok=True, needed=False, found=f"works ({backend}){use}")
+    tried = " and ".join(backends)
+    return Finding(name="off-screen drawing", ok=False, needed=False, found=f"{tried} failed", advice=advice)
+
+
+def _writing(folder: Path) -> Finding:
+    free = _guess(lambda: f"{shutil.disk_usage(folder).free / 1e9:.1f} GB free") or "size unknown"
+    try:
+        with tempfile.TemporaryDirectory(dir=folder):
+            pass
+    except OSError as error:
+        advice = "change to a folder that you may write, or give run and demo one with --out"
+        return Finding(name="run folders", ok=False, needed=True, found=f"{folder}: {error.strerror}", advice=advice)
+    return Finding(name="run folders", ok=True, needed=True, found=f"{folder / 'runs'} ({free})")
+
+
+def _compiled() -> Finding:
+    """Whether compiled searches are kept between runs."""
+    spec = find_spec("mintpilot")
+    root = Path(next(iter(spec.submodule_search_locations or [""]))) if spec else Path()
+    kept = sum(1 for _ in root.rglob("*.nbi"))
+    place = os.environ.get("NUMBA_CACHE_DIR", "")
+    kept += sum(1 for _ in Path(place).rglob("*.nbi")) if place else 0
+    found = f"{kept} compiled parts are kept" if kept else "empty: the first mission takes some seconds longer"
+    return Finding(name="compiled search", ok=True, needed=False, found=found)
+
+
+def _terminal() -> Finding:
+    here = sys.stdin is not None and sys.stdin.isatty()
+    return Finding(
+        name="terminal",
+        ok=True,
+        needed=False,
+        found="yes: the drone asks you" if here else "no: a scripted operator answers",
+    )
+
+
+def _guess(work: Callable[[], str]) -> str:
+    """What can be found out, or nothing."""
+    try:
+        return work()
+    except (OSError, PackageNotFoundError):
+        return ""

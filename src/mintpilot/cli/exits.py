@@ -1,0 +1,90 @@
+"""How the program ends: one table of exit codes, and the one place where errors become words."""
+
+from __future__ import annotations
+
+import json
+import sys
+import traceback
+from collections.abc import Callable
+from enum import IntEnum
+
+from mintpilot.core.errors import DeviceError, MintPilotError, MissingPartError, RecordError
+
+
+class ExitCode(IntEnum):
+    """What the program returns to the shell."""
+
+    SUCCESS = 0
+    """Done; a mission that was flown succeeded."""
+    NOT_A_SUCCESS = 1
+    """The mission was flown, but did not succeed; the report says why."""
+    WRONG_INPUT = 2
+    """A file, option or name is wrong, or asks for what nothing can fly."""
+    MISSING_PART = 3
+    """Something is missing on this machine; `mintpilot doctor` says what."""
+    FAILED_DEVICE = 4
+    """A device, a link or the run folder failed."""
+    DEFECT = 70
+    """A defect of MintPilot itself; `--debug` shows where."""
+    INTERRUPTED = 130
+    """Ctrl-C; the run folder is readable."""
+
+
+EPILOGUE = "Exit codes: " + "; ".join(
+    (
+        "0 success",
+        "1 the mission was flown but did not succeed",
+        "2 wrong input",
+        "3 something is missing on this machine",
+        "4 a device or the run folder failed",
+        "70 a defect of MintPilot",
+        "130 Ctrl-C.",
+    )
+)
+ERROR_SCHEMA_VERSION = 1
+
+
+def guarded(work: Callable[[], ExitCode], *, as_json: bool, debug: bool) -> ExitCode:
+    """Runs a command; what goes wrong becomes words on standard error and an exit code, never a traceback.
+
+    Args:
+        work: the command.
+        as_json: put the error on standard output too, as one JSON object.
+        debug: show the traceback as well.
+    """
+    try:
+        return work()
+    except KeyboardInterrupt:
+        code, kind, message = ExitCode.INTERRUPTED, "Interrupted", "stopped by Ctrl-C"
+    except BrokenPipeError:
+        # Whoever read our output went away (a pager was closed): nothing is left to say, nor anybody to hear it.
+        sys.stdout = None
+        return ExitCode.SUCCESS
+    except MintPilotError as error:
+        code, kind, message = _code_of(error), type(error).__name__, str(error)
+    except MemoryError:
+        code, kind, message = ExitCode.WRONG_INPUT, "MemoryError", "not enough memory; make the map smaller or coarser"
+    except Exception as error:  # the last resort: a user must never meet a bare traceback
+        code, kind = ExitCode.DEFECT, type(error).__name__
+        message = f"a defect of MintPilot: {kind}: {error}; run again with --debug and report what it shows"
+    if debug:
+        traceback.print_exc()
+    return fail(message, as_json=as_json, code=code, kind=kind)
+
+
+def fail(message: str, *, as_json: bool, code: ExitCode = ExitCode.WRONG_INPUT, kind: str = "InputError") -> ExitCode:
+    """Says what went wrong on standard error, and with ``as_json`` on standard output as one object."""
+    print(f"mintpilot: {message}", file=sys.stderr)
+    if as_json:
+        failure = {"kind": kind, "message": message, "exit_code": int(code)}
+        report = {"schema_version": ERROR_SCHEMA_VERSION, "outcome": "error", "error": failure}
+        print(json.dumps(report, ensure_ascii=False))
+    return code
+
+
+def _code_of(error: MintPilotError) -> ExitCode:
+    if isinstance(error, MissingPartError):
+        return ExitCode.MISSING_PART
+    if isinstance(error, DeviceError | RecordError):
+        return ExitCode.FAILED_DEVICE
+    return ExitCode.WRONG_INPUT

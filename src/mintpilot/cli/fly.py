@@ -1,0 +1,81 @@
+"""``mintpilot run`` and ``mintpilot demo``."""
+
+from __future__ import annotations
+
+import os
+import sys
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rich.console import Console
+
+from mintpilot.cli.exits import ExitCode
+from mintpilot.core.errors import InputError
+
+if TYPE_CHECKING:
+    from mintpilot.cli.progress import Narrator
+    from mintpilot.core.ports import Operator
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FlightOptions:
+    """How a mission is flown, as the command line says it."""
+
+    operator: str | None
+    """``terminal`` or ``scripted``; None: the terminal's where somebody is there."""
+    vehicle: str
+    strategy: str
+    seed: int | None
+    out: Path | None
+    """The run folder; None: a new one under ``runs``."""
+    as_json: bool
+
+
+def fly(path: Path, options: FlightOptions) -> ExitCode:
+    """Flies the mission in that file, tells how it goes, and prints the report or the record."""
+    from mintpilot.assembly.api import run_mission
+    from mintpilot.cli.progress import Narrator
+    from mintpilot.mission.reader import read_mission
+    from mintpilot.recording.run_folder import new_run_path
+    from mintpilot.recording.terminal_report import print_report
+
+    os.environ.setdefault("MUJOCO_GL", "egl")
+    mission = read_mission(path)
+    errors = Console(stderr=True)
+    out = options.out or new_run_path(Path("runs"), mission.name, datetime.now(UTC))
+    with Narrator(errors) as narrator:
+        try:
+            record = run_mission(
+                path,
+                operator=_operator(options.operator, errors, narrator),
+                vehicle=options.vehicle,
+                strategy=options.strategy,
+                seed=options.seed,
+                out=out,
+                progress=narrator,
+            )
+        except KeyboardInterrupt:
+            narrator.rest()
+            if out.exists():
+                errors.print(f"Stopped. What was recorded until then is in {out}.", highlight=False)
+            raise
+    if options.as_json:
+        print(record.model_dump_json())
+    else:
+        print_report(record, Console())
+    return ExitCode.SUCCESS if record.outcome.value == "success" else ExitCode.NOT_A_SUCCESS
+
+
+def _operator(choice: str | None, console: Console, narrator: Narrator) -> Operator | str:
+    """The person at the terminal, or the name of the scripted operator."""
+    somebody = sys.stdin is not None and sys.stdin.isatty() and console.is_terminal
+    if choice == "scripted" or (choice is None and not somebody):
+        return "scripted"
+    if sys.stdin is None:
+        raise InputError("--operator terminal needs a standard input; use --operator scripted where nobody is there")
+    from mintpilot.cli.progress import Attended
+    from mintpilot.interaction.terminal import TerminalOperator
+
+    return Attended(TerminalOperator(console, sys.stdin), narrator)

@@ -1,0 +1,212 @@
+"""The program ``mintpilot``: commands and options. What they do is in the files beside this one."""
+
+from __future__ import annotations
+
+import signal
+import sys
+from collections.abc import Sequence
+from importlib.metadata import version
+from pathlib import Path
+from types import FrameType
+from typing import Annotated, Literal, TypeAlias
+
+from cyclopts import App, CycloptsError, Parameter
+from rich.console import Console
+
+from mintpilot.cli.exits import EPILOGUE, ExitCode, fail, guarded
+
+app = App(
+    name="mintpilot",
+    help="Lets a drone ask instead of guess: it finds what it does not know, asks the fewest yes/no questions that "
+    "matter, and flies safely.",
+    help_epilogue=EPILOGUE,
+    version=version("mintpilot"),
+    help_format="plaintext",
+    result_action="return_value",
+)
+
+Json: TypeAlias = Annotated[bool, Parameter(name="--json", negative="")]
+Flag: TypeAlias = Annotated[bool, Parameter(negative="")]
+Seed: TypeAlias = Annotated[int | None, Parameter(name="--seed")]
+OperatorName: TypeAlias = Literal["terminal", "scripted"]
+VehicleName: TypeAlias = Literal["mujoco", "kinematic"]
+
+
+def examples(*lines: str) -> str:
+    """What stands at the end of a command's help: ways to call it, then the exit codes."""
+    return "\n".join(("Examples:", *(f"  {line}" for line in lines), "", EPILOGUE))
+
+
+@app.command(
+    help_epilogue=examples(
+        "mintpilot demo",
+        "mintpilot demo medicine --seed 3",
+        "mintpilot demo --headless --json",
+    )
+)
+def demo(
+    mission: Literal["fire-warehouse", "medicine"] = "fire-warehouse",
+    /,
+    *,
+    headless: Flag = False,
+    vehicle: VehicleName = "mujoco",
+    seed: Seed = None,
+    out: Path | None = None,
+    json: Json = False,
+    debug: Flag = False,
+) -> ExitCode:
+    """Fly one of the paper's two missions and show it.
+
+    On a terminal the drone asks you.
+
+    Args:
+        mission: The warehouse on fire, or the boxes of which one holds the medicine.
+        headless: Ask nobody: a scripted operator that knows the truth answers.
+        vehicle: Physics and camera, or a fast point mass.
+        seed: Draws another world; the same seed gives the same mission. Default: 0.
+        out: Run folder; a new one under ./runs by default.
+        json: Print the record as one JSON object, and nothing else, on standard output.
+        debug: Show the traceback of an error.
+    """
+    from mintpilot.cli.demos import demo_path
+    from mintpilot.cli.fly import FlightOptions, fly
+
+    options = FlightOptions(
+        operator="scripted" if headless else None, vehicle=vehicle, strategy="mint", seed=seed, out=out, as_json=json
+    )
+    return guarded(lambda: fly(demo_path(mission), options), as_json=json, debug=debug)
+
+
+@app.command(
+    help_epilogue=examples(
+        "mintpilot run examples/medicine.yaml",
+        "mintpilot run examples/fire-warehouse.yaml --operator scripted --vehicle kinematic --seed 7 --json",
+    )
+)
+def run(
+    mission: Path,
+    /,
+    *,
+    operator: OperatorName | None = None,
+    vehicle: VehicleName = "mujoco",
+    strategy: str = "mint",
+    seed: Seed = None,
+    out: Path | None = None,
+    json: Json = False,
+    debug: Flag = False,
+) -> ExitCode:
+    """Fly a mission file and write its run folder.
+
+    Args:
+        mission: The mission file (YAML).
+        operator: Who answers: you at this terminal, or a script that knows the truth. Default: you, where there is a
+            terminal.
+        vehicle: Physics and camera, or a fast point mass.
+        strategy: How it decides what to ask.
+        seed: Of everything that is drawn at random; overrides the one in the file.
+        out: Run folder; a new one under ./runs by default.
+        json: Print the record as one JSON object, and nothing else, on standard output.
+        debug: Show the traceback of an error.
+    """
+    from mintpilot.cli.fly import FlightOptions, fly
+
+    options = FlightOptions(operator=operator, vehicle=vehicle, strategy=strategy, seed=seed, out=out, as_json=json)
+    return guarded(lambda: fly(mission, options), as_json=json, debug=debug)
+
+
+@app.command(
+    help_epilogue=examples(
+        "mintpilot plan examples/my-building/mission.yaml",
+        "mintpilot plan examples/my-building/mission.yaml --json",
+    )
+)
+def plan(
+    mission: Path,
+    /,
+    *,
+    strategy: str = "mint",
+    seed: Seed = None,
+    json: Json = False,
+    debug: Flag = False,
+) -> ExitCode:
+    """Think about a mission without flying it: gaps, tree, plan classes, the next question, how many to expect.
+
+    A map of your own needs no simulator.
+
+    Args:
+        mission: The mission file (YAML).
+        strategy: How it decides what to ask.
+        seed: Of everything that is drawn at random; overrides the one in the file.
+        json: Print one JSON object, and nothing else, on standard output.
+        debug: Show the traceback of an error.
+    """
+    from mintpilot.cli.think import think
+
+    return guarded(lambda: think(mission, strategy=strategy, seed=seed, as_json=json), as_json=json, debug=debug)
+
+
+@app.command(
+    help_epilogue=examples(
+        "mintpilot check examples/my-building/mission.yaml",
+        "mintpilot check --schema > mission.schema.json",
+    )
+)
+def check(
+    mission: Path | None = None,
+    /,
+    *,
+    schema: Flag = False,
+    json: Json = False,
+    debug: Flag = False,
+) -> ExitCode:
+    """Find every mistake in a mission file: its place, what is wrong, and what to write instead.
+
+    Args:
+        mission: The mission file (YAML).
+        schema: Print the JSON Schema of mission files instead; editors use it to help you write.
+        json: Print one JSON object, and nothing else, on standard output.
+        debug: Show the traceback of an error.
+    """
+    from mintpilot.cli.checking import check_file, print_schema
+
+    if schema:
+        return guarded(print_schema, as_json=False, debug=debug)
+    if mission is None:
+        return fail("check needs a mission file, or --schema; see mintpilot check --help", as_json=json)
+    return guarded(lambda: check_file(mission, as_json=json), as_json=json, debug=debug)
+
+
+@app.command(
+    help_epilogue=examples(
+        "mintpilot doctor",
+        "mintpilot doctor --json",
+    )
+)
+def doctor(*, json: Json = False, debug: Flag = False) -> ExitCode:
+    """Look at this machine: what is installed, what is missing, and how to get it.
+
+    Args:
+        json: Print one JSON object, and nothing else, on standard output.
+        debug: Show the traceback of an error.
+    """
+    from mintpilot.cli.doctor import examine
+
+    return guarded(lambda: examine(as_json=json), as_json=json, debug=debug)
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Runs the program with these words (default: those of the command line); returns its exit code."""
+    words = list(sys.argv[1:] if arguments is None else arguments)
+    signal.signal(signal.SIGTERM, _terminated)
+    try:
+        code = app(words, exit_on_error=False, print_error=False, error_console=Console(stderr=True))
+    except CycloptsError as error:
+        return fail(f"{error}; see mintpilot --help", as_json="--json" in words)
+    except KeyboardInterrupt:
+        return ExitCode.INTERRUPTED
+    return int(code or 0)
+
+
+def _terminated(_number: int, _frame: FrameType | None) -> None:
+    """Being told to end is treated as Ctrl-C: the run folder is closed first."""
+    raise KeyboardInterrupt

@@ -1,0 +1,127 @@
+"""What a person sees while a mission runs, on standard error: a moving line on a terminal, plain lines elsewhere."""
+
+from __future__ import annotations
+
+from types import TracebackType
+from typing import Self
+
+from rich.console import Console
+from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+from rich.text import Text
+
+from mintpilot.core.events import (
+    Asked,
+    Deliberated,
+    Event,
+    FrameSeen,
+    LegFlown,
+    MapUpdated,
+    MissionEnded,
+    MissionStarted,
+    Noticed,
+    PlanChosen,
+)
+from mintpilot.core.ports import Operator
+from mintpilot.core.query import Answer, Question
+
+
+class Narrator:
+    """Tells what happens, one event after the other; use it as a context manager.
+
+    On a terminal the stage that is going on is a moving line; it rests while the person is asked.
+    """
+
+    def __init__(self, console: Console) -> None:
+        self._console = console
+        self._bar: Progress | None = None
+        self._stage = "preparing"
+        if console.is_terminal:
+            self._bar = Progress(
+                SpinnerColumn(), TextColumn("{task.description}"), TimeElapsedColumn(), console=console, transient=True
+            )
+        self._pictures = 0
+
+    def __enter__(self) -> Self:
+        self._go_on(self._stage)
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.rest()
+
+    def __call__(self, event: Event) -> None:
+        """Tells one event."""
+        if isinstance(event, FrameSeen):
+            self._pictures += 1
+            self._go_on(f"{self._stage} ({self._pictures} pictures)")
+            return
+        line, stage = told(event)
+        if line:
+            self._say(line)
+        if stage:
+            self._stage = stage
+            self._go_on(stage)
+
+    def rest(self) -> None:
+        """Takes the moving line away; the next stage brings it back."""
+        if self._bar is not None:
+            self._bar.stop()
+            for task in list(self._bar.task_ids):
+                self._bar.remove_task(task)
+
+    def _go_on(self, stage: str) -> None:
+        if self._bar is None:
+            return
+        if not self._bar.task_ids:
+            self._bar.add_task(stage, total=None)
+            self._bar.start()
+        self._bar.update(self._bar.task_ids[0], description=stage)
+
+    def _say(self, line: str) -> None:
+        self._console.print(Text("".join(c if c.isprintable() else " " for c in line)), highlight=False)
+
+
+class Attended(Operator):
+    """An operator at the same terminal: the moving line rests while the person is asked."""
+
+    def __init__(self, operator: Operator, narrator: Narrator) -> None:
+        self._operator = operator
+        self._narrator = narrator
+
+    def ask(self, question: Question, patience_s: float) -> Answer:
+        """As the operator inside."""
+        self._narrator.rest()
+        return self._operator.ask(question, patience_s)
+
+    def tell(self, text: str) -> None:
+        """As the operator inside."""
+        self._narrator.rest()
+        self._operator.tell(text)
+
+
+def told(event: Event) -> tuple[str, str]:
+    """The line that an event is worth, and the stage that begins with it; either may be empty."""
+    if isinstance(event, MissionStarted):
+        return f"Mission '{event.mission.name}': {event.mission.instruction}", "looking around"
+    if isinstance(event, MapUpdated):
+        found = f"{len(event.map.objects)} objects, {len(event.map.regions)} regions, {len(event.map.rooms)} rooms"
+        return f"Map ({event.why}): {found}.", "thinking"
+    if isinstance(event, Deliberated):
+        if event.chosen is None:
+            return f"Thought {event.seconds:.2f} s about {len(event.gaps)} knowledge gaps: nothing to ask.", ""
+        worth = f"the best question is worth {event.chosen.gain_bits:.2f} bits"
+        return f"Thought {event.seconds:.2f} s about {len(event.gaps)} knowledge gaps: {worth}.", ""
+    if isinstance(event, Asked):
+        return f"Asked: {event.question.text} Answer: {event.answer.reply.value}.", "thinking"
+    if isinstance(event, PlanChosen):
+        if event.plan is None:
+            return "No plan that is known to be safe.", "staying safe"
+        return f"Plan: {event.plan.length_m:.1f} m, {event.plan.cost_s:.0f} s.", "flying"
+    if isinstance(event, LegFlown):
+        return f"Flown ({event.phase}): {event.stop_id}, {event.log.end.value}.", ""
+    if isinstance(event, Noticed):
+        return f"Noticed: {event.text}", ""
+    if isinstance(event, MissionEnded):
+        return f"Ended: {event.verdict.outcome.value}. {event.verdict.reason}", "writing the report"
+    return "", ""
