@@ -1,0 +1,139 @@
+"""Stops and their sites as places on the grid, and routes through them as plans."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from mintpilot.core.errors import InfeasibleError, MissionError
+from mintpilot.core.gap import PRESENT, GapKind
+from mintpilot.core.geometry import Floats
+from mintpilot.core.plan import Leg, Plan, PlanningProblem, Site, Stop
+from mintpilot.planning.approach import approach_cell
+from mintpilot.planning.legs import Cell3
+from mintpilot.planning.route import Route, Tour
+from mintpilot.planning.terrain import Terrain
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Itinerary:
+    """The stops of a problem with the place of every site."""
+
+    problem: PlanningProblem
+    terrain: Terrain
+    ordered: tuple[Stop, ...]
+    """In order."""
+    optional: tuple[Stop, ...]
+    """Sorted by id."""
+    targets: tuple[str, ...]
+    """Gaps that choose sites of ordered stops, sorted."""
+    places: Mapping[tuple[str, str], Cell3 | None]
+    """Cell at which each (stop id, value of its site) is served; None where it cannot be reached."""
+
+    @property
+    def start(self) -> Cell3:
+        """The cell where all routes begin."""
+        z, y, x = (int(i) for i in self.terrain.start)
+        return (z, y, x)
+
+    def site(self, stop: Stop, values: Mapping[str, str]) -> Site | None:
+        """The site of a stop when its target gap has that value; None for a value without a site."""
+        if stop.gap not in values:
+            return stop.sites[0]
+        return next((s for s in stop.sites if s.value == values[stop.gap]), None)
+
+    def sites(self, values: Mapping[str, str]) -> tuple[tuple[object, ...], ...]:
+        """Where the ordered stops are under those values: equal for values that make no difference."""
+        chosen = (self.site(stop, values) for stop in self.ordered)
+        return tuple((s.position_m, s.reach_m) if s else ("nowhere",) for s in chosen)
+
+    def tour(self, values: Mapping[str, str], visits: Sequence[Stop]) -> Tour | None:
+        """The places to be visited; None where one of them cannot be reached or does not exist."""
+        places = []
+        for stop in (*self.ordered, *visits):
+            site = self.site(stop, values)
+            place = self.places[stop.id, site.value] if site else None
+            if place is None:
+                return None
+            places.append(place)
+        return Tour(start=self.start, places=tuple(places), ordered=len(self.ordered))
+
+    def plan(self, route: Route, values: Mapping[str, str], visits: Sequence[Stop]) -> Plan:
+        """A route as a plan in metres and seconds, which relies on nothing yet."""
+        stops = (*self.ordered, *visits)
+        cruise = self.problem.limits.cruise_mps
+        legs = []
+        for number, way in zip(route.order, route.ways, strict=True):
+            stop = stops[number]
+            site = self.site(stop, values)
+            assert site is not None, "a tour has a site for every stop"
+            path = self.terrain.frame.centres_of(way.path)
+            length = way.cost * self.terrain.frame.resolution_m
+            if not legs:
+                path, hop = _from_start(path, self.problem.start_m)
+                length += hop
+            duration = length / cruise + stop.dwell_s
+            legs.append(Leg(stop=stop, site=site, path_m=path, length_m=length, duration_s=duration))
+        return Plan(
+            legs=tuple(legs),
+            cost_s=float(sum(leg.duration_s for leg in legs)),
+            relies_on=frozenset(),
+            enters=frozenset(g.id for r, g in enumerate(self.terrain.gaps) if route.mask >> r & 1),
+            binds=tuple(sorted(values.items())),
+            skips=frozenset(s.gap for s in self.optional if s not in visits),
+        )
+
+
+def itinerary_of(problem: PlanningProblem, terrain: Terrain) -> Itinerary:
+    """Finds the place of every site.
+
+    Raises:
+        InfeasibleError: a stop that is not optional can be reached under no hypothesis.
+        MissionError: a stop has several sites and no gap to choose among them.
+    """
+    kinds = {g.id: g.kind for g in problem.gaps}
+    ordered = tuple(s for s in problem.stops if not s.optional)
+    places = {
+        (stop.id, site.value): _cell(approach_cell(terrain, site)) for stop in problem.stops for site in stop.sites
+    }
+    for stop in ordered:
+        if len(stop.sites) != 1 and stop.gap not in kinds:
+            raise MissionError(
+                f"stop '{stop.id}' has {len(stop.sites)} sites and its gap '{stop.gap}' is not open; give it one site"
+            )
+        if all(places[stop.id, site.value] is None for site in stop.sites):
+            site = stop.sites[0]
+            raise InfeasibleError(
+                f"stop '{stop.id}' at {site.position_m} can be reached under no hypothesis: no flyable cell within "
+                f"{site.reach_m} m of it is connected to the start; map its surroundings, or allow a wider reach"
+            )
+    return Itinerary(
+        problem=problem,
+        terrain=terrain,
+        ordered=ordered,
+        optional=tuple(sorted((s for s in problem.stops if s.optional), key=lambda s: s.id)),
+        targets=tuple(sorted({s.gap for s in ordered if kinds.get(s.gap, GapKind.PRESENCE) is not GapKind.PRESENCE})),
+        places=places,
+    )
+
+
+def needed_value(stop: Stop) -> str:
+    """The value of its presence gap under which an optional stop must be visited."""
+    return stop.sites[0].value or PRESENT
+
+
+def _cell(cell: Sequence[int] | np.ndarray | None) -> Cell3 | None:
+    if cell is None:
+        return None
+    z, y, x = (int(i) for i in cell)
+    return (z, y, x)
+
+
+def _from_start(path_m: Floats, start_m: tuple[float, float, float]) -> tuple[Floats, float]:
+    """The path from the true start on, and the length of the way to its first cell's centre."""
+    hop = float(np.linalg.norm(path_m[0] - start_m))
+    if hop < 1e-9:
+        return path_m, 0.0
+    return np.concatenate([np.array([start_m], float), path_m]), hop

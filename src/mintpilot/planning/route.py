@@ -1,0 +1,97 @@
+"""The best order of stops: ordered ones in order, needed optional ones put in where they cost least."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from mintpilot.core.geometry import Ints
+from mintpilot.planning.decision_list import Way
+from mintpilot.planning.legs import Cell3, LegTable
+
+TIE = 1e-9
+"""Costs in edges that are closer than this are equal."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Route:
+    """A way through all stops."""
+
+    cost: float
+    """In edges."""
+    mask: int
+    """Regions entered."""
+    order: tuple[int, ...]
+    """Numbers of the stops, in the order of the visits."""
+    ways: tuple[Way[Ints], ...]
+    """The way to each of them."""
+
+    def rank(self, uncertain: int) -> tuple[float, int, int, int, tuple[int, ...]]:
+        """Sorting key: cheap first, then few uncertain regions, then few regions, then by number."""
+        return (
+            round(self.cost, 9),
+            (self.mask & uncertain).bit_count(),
+            self.mask.bit_count(),
+            self.mask,
+            self.order,
+        )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Tour:
+    """What is to be visited: stop i is served at ``places[i]``."""
+
+    start: Cell3
+    places: tuple[Cell3, ...]
+    ordered: int
+    """The first so many stops keep their order; the rest may be put anywhere."""
+
+
+def best_route(legs: LegTable, tour: Tour, blocked: int, uncertain: int) -> Route | None:
+    """The cheapest route that enters no blocked region; among equals the one that enters the fewest uncertain ones.
+
+    Exact: the state is (ordered stops done, others done, place). As costs add up, a cheapest route consists of
+    cheapest ones to each state; of those all are kept that differ in the uncertain regions entered.
+    """
+    rest = range(tour.ordered, len(tour.places))
+    layer: dict[tuple[int, int, int], list[Route]] = {(0, 0, -1): [Route(cost=0.0, mask=0, order=(), ways=())]}
+    for _ in tour.places:
+        coming: dict[tuple[int, int, int], list[Route]] = {}
+        for (done, others, last), routes in layer.items():
+            here = tour.start if last < 0 else tour.places[last]
+            moves = [(done + 1, others, done)] if done < tour.ordered else []
+            moves += [(done, others | 1 << s, s) for s in rest if not others >> s & 1]
+            for state in moves:
+                ways = cheapest(legs.between(here, tour.places[state[2]]).ways, blocked)
+                for route in routes:
+                    for way in ways:
+                        _offer(coming.setdefault(state, []), _longer(route, way, state[2]), uncertain)
+        layer = {state: routes for state, routes in coming.items() if routes}
+    ends = [route for routes in layer.values() for route in routes]
+    return min(ends, key=lambda r: r.rank(uncertain), default=None)
+
+
+def cheapest(ways: Sequence[Way[Ints]], blocked: int) -> list[Way[Ints]]:
+    """The ways of least cost that enter no blocked region: several where they enter different ones at equal cost."""
+    usable = [w for w in ways if not w.mask & blocked]
+    return [w for w in usable if w.cost <= usable[0].cost + TIE]
+
+
+def _longer(route: Route, way: Way[Ints], stop: int) -> Route:
+    return Route(
+        cost=route.cost + way.cost,
+        mask=route.mask | way.mask,
+        order=(*route.order, stop),
+        ways=(*route.ways, way),
+    )
+
+
+def _offer(kept: list[Route], new: Route, uncertain: int) -> None:
+    """Keeps the new route unless one as cheap enters no other uncertain region; drops what it beats."""
+    beats: Callable[[Route, Route], bool] = lambda a, b: (  # noqa: E731
+        a.cost < b.cost - TIE or (a.cost <= b.cost + TIE and not a.mask & uncertain & ~b.mask)
+    )
+    if any(beats(old, new) for old in kept):
+        return
+    kept[:] = [old for old in kept if not beats(new, old)]
+    kept.append(new)
