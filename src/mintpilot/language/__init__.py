@@ -1,1 +1,5 @@
-"""Instructions into tasks, free answers into replies; language models behind one port."""
+"""Language: instruction in, question out, answer understood. Whole without a model; never deciding meaning."""
+
+from mintpilot.language.instruction import Capabilities, parse_instruction
+
+__all__ = ["Capabilities", "parse_instruction"]

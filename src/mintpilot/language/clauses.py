@@ -1,0 +1,162 @@
+"""One clause → sub-goals. The patterns are tried in order; the first that fits decides."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+
+from mintpilot.core.errors import InputError
+from mintpilot.core.geometry import Vec3
+from mintpilot.core.observation import Attribute
+from mintpilot.core.task import Action, Reference, SubGoal
+from mintpilot.language import lexicon
+from mintpilot.language.phrases import parse_phrase
+
+_PICK = r"(?:pick up|pick|grab|take|collect|fetch|get|retrieve|lift|bring|carry|deliver|transport)"
+_BRING = r"(?:bring|take|carry|deliver|give|hand|transport|get|fly|return)"
+_FROM = r"(?:from|out of|off|inside|in)"
+_TO = r"(?<!next )(?<!close )(?:over to|up to|back to|to|onto)"
+_GO = (
+    r"(?:go and find|go|fly|move|head|navigate|travel|proceed|come|drive|return|hover|wait|continue)"
+    r"(?: straight| directly| over| up| back| on)*(?: to| towards| toward| over| at| above| next to| near| by)"
+)
+_FIND = (
+    r"(?:find|locate|search for|look for|seek|rescue|reach|approach|visit|inspect|look at|check on|check|go and see|"
+    r"see to|attend to|get to|help|save|track down)"
+)
+_LOOK = r"(?:look into|look inside|look in|peek into|peek in|check|search|inspect|examine|clear|scan|sweep|visit|go through)"
+_HOME = r"(?:come|go|fly|return|head|get)(?: straight)? (?:back|home|back home|to base|back to base|to the pad|to the start|to start)(?: to .*)?"
+
+
+@dataclass(slots=True, kw_only=True)
+class Reading:
+    """What was understood so far."""
+
+    home_m: Vec3 | None = None
+    subgoals: list[SubGoal] = field(default_factory=list)
+    carrying: bool = False
+    """Whether something was picked up and not handed over."""
+
+    def reference(self, phrase: str) -> Reference:
+        """The phrase read in its place: ``the blue one`` and ``it`` look back. Raises `InputError`."""
+        before = next((g.reference for g in reversed(self.subgoals)), None)
+        reference = parse_phrase(phrase, before)
+        if reference.phrase in lexicon.PRONOUNS:
+            if before is None:
+                raise InputError(f"'{reference.phrase}' refers to nothing that was named before: name the thing")
+            return before
+        return reference
+
+    def add(self, action: Action, reference: Reference) -> None:
+        """Notes one step."""
+        self.subgoals.append(SubGoal(action=action, reference=reference))
+
+
+def read_clause(clause: str, reading: Reading) -> bool:
+    """Adds what the clause asks for to the reading; False where no pattern fits.
+
+    Raises:
+        InputError: the clause is understood, but unclear or impossible.
+    """
+    for pattern, read in _PATTERNS:
+        found = pattern.fullmatch(clause)
+        if found is not None and read(reading, **found.groupdict()):
+            return True
+    return False
+
+
+def _move(reading: Reading, *, thing: str, source: str | None = None, goal: str) -> bool:
+    """Bring something somewhere: picked up first unless it is carried already."""
+    if thing in lexicon.PRONOUNS or (reading.carrying and source is None):
+        if not reading.carrying:
+            raise InputError(f"'{thing}' to be brought to '{goal}' was not picked up before: say what to pick up")
+    elif not _pick(reading, thing=thing, source=source):
+        return False
+    reading.add(Action.DELIVER, reading.reference(goal))
+    reading.carrying = False
+    return True
+
+
+def _pick(reading: Reading, *, thing: str, source: str | None = None) -> bool:
+    """Pick something up; out of a container it is the container that is flown to."""
+    if source is None:
+        reading.add(Action.PICK, reading.reference(thing))
+    else:
+        inside = " ".join(w for w in thing.split() if w not in lexicon.DETERMINERS)
+        holder = reading.reference(source)
+        contents = () if inside in lexicon.PRONOUNS else (Attribute(name="contents", value=inside),)
+        reading.add(Action.PICK, replace(holder, attributes=(*holder.attributes, *contents)))
+    reading.carrying = True
+    return True
+
+
+def _drop(reading: Reading, *, thing: str, goal: str) -> bool:
+    return _move(reading, thing=thing, goal=goal)
+
+
+def _look(reading: Reading, *, place: str) -> bool:
+    """Look into a room; other places are gone to."""
+    reference = reading.reference(re.sub(r"^(behind (?:the|every|each|all) (?:\w+ )?doors?)$", r"the room \1", place))
+    if reference.label != "room":
+        return False
+    reading.add(Action.LOOK, reference)
+    return True
+
+
+def _go(reading: Reading, *, place: str) -> bool:
+    reading.add(Action.GO, reading.reference(place))
+    return True
+
+
+def _go_on(reading: Reading, *, place: str) -> bool:
+    """``… and then to the blue one``: the verb is the one before."""
+    return bool(reading.subgoals) and reading.subgoals[-1].action is Action.GO and _go(reading, place=place)
+
+
+def _same(reading: Reading, *, place: str) -> bool:
+    """``… and the blue one``: the action is the one before, where it can be done twice."""
+    if not reading.subgoals or reading.subgoals[-1].action not in (Action.GO, Action.LOOK):
+        return False
+    reading.add(reading.subgoals[-1].action, reading.reference(place))
+    return True
+
+
+def _home(reading: Reading) -> bool:
+    if reading.home_m is None:
+        raise InputError(
+            "where to come back to is not known here: name the place, or give the steps without the way back"
+        )
+    reading.add(Action.GO, Reference(phrase="home", position_m=reading.home_m))
+    return True
+
+
+def _wait(reading: Reading, *, seconds: str, unit: str) -> bool:
+    """Stay where the last step ended."""
+    if not reading.subgoals:
+        raise InputError("waiting before the first step: say where to wait")
+    dwell_s = float(seconds) * (60 if unit.startswith("min") else 1)
+    reading.subgoals[-1] = replace(reading.subgoals[-1], dwell_s=dwell_s)
+    return True
+
+
+_PATTERNS: tuple[tuple[re.Pattern[str], Callable[..., bool]], ...] = tuple(
+    (re.compile(pattern), read)
+    for pattern, read in (
+        (_HOME, _home),
+        (r"(?:wait|hover|stay|hold|remain)(?: there| here)?(?: for)? (?P<seconds>\d+(?:\.\d+)?) ?(?P<unit>s|sec\w*|min\w*)", _wait),
+        (rf"{_BRING} (?P<thing>.+?) {_FROM} (?P<source>.+?) {_TO} (?P<goal>.+)", _move),
+        (rf"{_BRING} (?P<goal>him|her|them|the \w+ (?:person|man|woman|victim)|the (?:person|victim|man|woman)) (?P<thing>the .+?|it) {_FROM} (?P<source>.+)", _move),
+        (rf"{_BRING} (?P<goal>the \w+ (?:person|man|woman|victim)|the (?:person|victim|man|woman)) (?P<thing>the .+|it|some .+|a .+)", _move),
+        (rf"{_BRING} (?P<thing>.+?) {_TO} (?P<goal>.+)", _move),
+        (r"(?:drop|put|place|leave|set|release)(?: down| off)? (?P<thing>.+?)(?: down| off)? (?:to|at|by|near|next to|beside|with|in front of) (?P<goal>.+)", _drop),
+        (rf"{_PICK} (?P<thing>.+?) {_FROM} (?P<source>.+)", _pick),
+        (rf"{_PICK} (?P<thing>.+?)(?: up)?", _pick),
+        (rf"{_LOOK} (?P<place>.+)", _look),
+        (rf"{_FIND} (?P<place>.+)", _go),
+        (rf"{_GO} (?P<place>.+)", _go),
+        (r"go (?P<place>there)", _go),
+        (r"(?:on )?to (?P<place>.+)", _go_on),
+        (r"(?P<place>(?:the|every|each|all) .+)", _same),
+    )
+)  # fmt: skip

@@ -1,0 +1,121 @@
+"""The words of the documented instruction language. Tables only."""
+
+from __future__ import annotations
+
+from mintpilot.core.observation import RegionKind
+
+ADJECTIVES: dict[str, tuple[str, str]] = {
+    **{
+        word: ("colour", word)
+        for word in (
+            "red", "orange", "yellow", "green", "blue", "purple", "violet", "pink", "brown", "black", "white", "grey",
+            "golden", "silver",
+        )
+    },
+    "gray": ("colour", "grey"),
+    **{word: ("size", "small") for word in ("small", "little", "tiny")},
+    **{word: ("size", "large") for word in ("large", "big", "huge")},
+    "medium": ("size", "medium"),
+    "tall": ("height", "tall"),
+    "round": ("shape", "spherical"),
+    "spherical": ("shape", "spherical"),
+    "cylindrical": ("shape", "cylindrical"),
+    "square": ("shape", "cubic"),
+    "cubic": ("shape", "cubic"),
+    "flat": ("shape", "flat"),
+    "long": ("shape", "long"),
+    **{word: ("condition", "injured") for word in ("injured", "hurt", "wounded", "trapped", "unconscious")},
+    **{word: ("material", word) for word in ("wooden", "metal", "plastic", "cardboard")},
+    **{word: ("pattern", word) for word in ("striped", "dotted", "checked")},
+    "nearest": ("extreme", "nearest"),
+    "closest": ("extreme", "nearest"),
+    "farthest": ("extreme", "farthest"),
+    "furthest": ("extreme", "farthest"),
+    "largest": ("extreme", "largest"),
+    "biggest": ("extreme", "largest"),
+    "smallest": ("extreme", "smallest"),
+    "tallest": ("extreme", "tallest"),
+    "highest": ("extreme", "highest"),
+    "lowest": ("extreme", "lowest"),
+    "leftmost": ("extreme", "leftmost"),
+    "rightmost": ("extreme", "rightmost"),
+    "left": ("side", "left"),
+    "right": ("side", "right"),
+}  # fmt: skip
+"""Word → name and value of the attribute that it says."""
+
+PEOPLE = frozenset(
+    "person people victim victims survivor survivors casualty casualties patient patients human humans man woman child "
+    "men women children anyone anybody someone somebody everyone everybody".split()
+)
+"""Nouns that mean the label ``person``."""
+
+ANYBODY = frozenset("anyone anybody someone somebody everyone everybody people survivors victims casualties".split())
+"""Nouns that mean whoever is there, not a certain person."""
+
+ROOMS = frozenset("room rooms chamber chambers office offices".split())
+
+PRONOUNS = frozenset("it them this that him her there".split())
+
+DETERMINERS = frozenset("the a an this that these those my our his her their some any".split())
+
+EVERY = frozenset("every each all both".split())
+
+VENUES = frozenset(
+    "warehouse building hall hangar house factory area zone place site depot scene store storehouse".split()
+)
+"""Where it all happens: ``in the burning warehouse`` tells nothing apart."""
+
+IRREGULAR = {"shelves": "shelf", "boxes": "box", "crates": "crate", "people": "person", "men": "man", "women": "woman"}
+"""Plurals that do not only add an s."""
+
+AVOIDED: dict[str, RegionKind] = {
+    "smoke": RegionKind.SMOKE,
+    "fumes": RegionKind.SMOKE,
+    "clouds": RegionKind.SMOKE,
+    "cloud": RegionKind.SMOKE,
+    "door": RegionKind.DOOR,
+    "doors": RegionKind.DOOR,
+    "doorway": RegionKind.DOOR,
+    "marked area": RegionKind.AREA,
+    "restricted area": RegionKind.AREA,
+    "closed area": RegionKind.AREA,
+}
+"""What a person may ask to stay out of → kind of region."""
+
+NEVER_TOUCHED = frozenset(
+    "fire flames walls wall racks rack shelves obstacles people everything collisions anything".split()
+)
+"""What no plan flies into anyway, so that asking for it changes nothing."""
+
+CANNOT = {
+    "land": "landing on request",
+    "open": "opening things",
+    "close": "closing things",
+    "push": "pushing things",
+    "pull": "pulling things",
+    "extinguish": "putting out fires",
+    "put out": "putting out fires",
+    "spray": "spraying",
+    "photograph": "taking photographs on request",
+    "take a photo": "taking photographs on request",
+    "take a picture": "taking photographs on request",
+    "take photos": "taking photographs on request",
+    "take pictures": "taking photographs on request",
+    "film": "filming",
+    "follow": "following somebody",
+    "shoot": "weapons",
+    "attack": "harm of any kind",
+    "ram": "harm of any kind",
+    "hit": "harm of any kind",
+    "crash": "harm of any kind",
+    "break": "breaking things",
+    "throw": "throwing things",
+    "repair": "repairs",
+    "call": "calling somebody",
+    "talk": "talking to somebody",
+    "swim": "swimming",
+    "drive": "driving",
+    "dig": "digging",
+}
+"""What people ask for and this drone does not do → what that is."""

@@ -1,0 +1,108 @@
+"""Noun phrase → `Reference`. Words that are not known stay in it as unnamed attributes: they rule nothing out."""
+
+from __future__ import annotations
+
+import re
+
+from mintpilot.core.errors import InputError
+from mintpilot.core.geometry import Vec3
+from mintpilot.core.observation import Attribute
+from mintpilot.core.task import Reference
+from mintpilot.language import lexicon
+
+DEFAULT_HEIGHT_M = 1.5
+"""Height of a place that is given by two numbers only, metres."""
+
+_NUMBER = r"(-?\d+(?:\.\d+)?)"
+_UNIT = r"(?:\s*(?:m|metres?|meters?))?"
+_POSITION = re.compile(
+    rf"^(?:(?:the )?(?:point|position|place|coordinates?|waypoint) )?\(?\s*(?:x\s*=?\s*)?{_NUMBER}{_UNIT}\s*(?:,|\s|;)\s*"
+    rf"(?:y\s*=?\s*)?{_NUMBER}{_UNIT}(?:\s*(?:,|\s|;|at)\s*(?:z\s*=?\s*)?{_NUMBER}{_UNIT}(?: (?:high|up|altitude))?)?\s*\)?$"
+)
+_VENUE = re.compile(
+    rf"\s+(?:in|inside|within|of|around|throughout)\s+(?:the|this|that)\s+(?:\w+ ){{0,2}}(?:{'|'.join(sorted(lexicon.VENUES))})$"
+)
+_HERE = re.compile(r"\s+(?:in here|in there|over there|nearby|inside|around)$")
+_SIDE = re.compile(r"\s+(?:on|to|at) (?:the|your|our|its) (left|right)(?:[- ]hand)?(?: side)?$")
+_NEAR = re.compile(r"\s+(?:next to|near|beside|by|close to|under|underneath|in front of|behind|at|on|inside|in) (.+)$")
+_WITH = re.compile(r"\s+(?:with|containing|that has|that have|wearing) (?:the |a |an |some )?(.+)$")
+_STATE = re.compile(r"\s+(?:who|that|which) (?:is|are|was|were|may be|might be) (\w+)$")
+
+
+def parse_phrase(phrase: str, before: Reference | None = None) -> Reference:
+    """What a noun phrase means.
+
+    Args:
+        phrase: e.g. ``the small red box next to the rack``, ``every room on the left``, ``3, 4``, ``it``.
+        before: the reference before it, for ``the blue one``.
+
+    Raises:
+        InputError: the phrase names a choice, several things, or no thing at all.
+    """
+    words = " ".join(phrase.lower().strip(" ,.!;").split())
+    if (position_m := parse_position(words)) is not None:
+        return Reference(phrase=words, position_m=position_m)
+    if words in lexicon.PRONOUNS:
+        return Reference(phrase=words)
+    if re.search(r"\b(or|either)\b", words):
+        raise InputError(f"'{words}' names a choice: say which one is meant, or describe both by what they share")
+    if re.search(r"\band\b", words) and not re.search(r"\b(with|wearing|containing)\b.* and ", words):
+        raise InputError(f"'{words}' names several things: give a step for each")
+    return _describe(_HERE.sub("", _VENUE.sub("", words)), before)
+
+
+def parse_position(words: str) -> Vec3 | None:
+    """A place given by two or three numbers, metres; None for anything else."""
+    found = _POSITION.match(words)
+    if found is None:
+        return None
+    x, y, z = found.groups()
+    return (float(x), float(y), DEFAULT_HEIGHT_M if z is None else float(z))
+
+
+def singular(noun: str) -> str:
+    """The noun in the singular, as far as the lexicon's few rules go."""
+    if noun in lexicon.IRREGULAR:
+        return lexicon.IRREGULAR[noun]
+    if noun.endswith(("sses", "shes", "ches", "xes")):
+        return noun[:-2]
+    return noun[:-1] if noun.endswith("s") and not noun.endswith(("ss", "us")) else noun
+
+
+def _describe(words: str, before: Reference | None) -> Reference:
+    rest, after = _tail(words)
+    tokens = rest.split()
+    every = bool(tokens) and tokens[0] in lexicon.EVERY
+    if every and tokens[1:2] == ["of"]:
+        tokens = [tokens[0], *tokens[2:]]
+    tokens = [t for t in tokens[int(every) :] if t not in lexicon.DETERMINERS]
+    if len(tokens) > 1 and tokens[-1] in lexicon.ADJECTIVES:  # anyone hurt, somebody injured
+        tokens = [*tokens[-1:], *tokens[:-1]]
+    tokens = [t for t in tokens if t not in ("else", "other", "further", "more")]
+    if not tokens or tokens[-1] in lexicon.ADJECTIVES:
+        raise InputError(f"'{words}' names no thing: add a noun, as in 'the red box'")
+    *adjectives, noun = tokens
+    said = tuple(_attribute(word) for word in adjectives)
+    if noun in ("one", "ones") and before is not None:
+        return Reference(phrase=words, label=before.label, attributes=(*said, *after), every=every)
+    label = "person" if noun in lexicon.PEOPLE else "room" if noun in lexicon.ROOMS else singular(noun)
+    plural = noun in lexicon.ANYBODY or (label != noun and noun not in lexicon.PEOPLE | lexicon.ROOMS)
+    plural = plural or (noun in lexicon.PEOPLE | lexicon.ROOMS and singular(noun) != noun)
+    return Reference(phrase=words, label=label, attributes=(*said, *after), every=every or plural)
+
+
+def _tail(words: str) -> tuple[str, tuple[Attribute, ...]]:
+    """Takes what follows the noun off its phrase: ``on the left``, ``next to the rack``, ``with the medicine``."""
+    found: list[Attribute] = []
+    for pattern, name in ((_STATE, "condition"), (_SIDE, "side"), (_WITH, "contents"), (_NEAR, "near")):
+        match = pattern.search(words)
+        if match is None:
+            continue
+        words, value = words[: match.start()], match.group(1)
+        found.append(_attribute(value) if name == "condition" else Attribute(name=name, value=value))
+    return words, tuple(found)
+
+
+def _attribute(word: str) -> Attribute:
+    name, value = lexicon.ADJECTIVES.get(word, ("", word))
+    return Attribute(name=name, value=value)

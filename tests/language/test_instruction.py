@@ -1,0 +1,99 @@
+"""Instruction in, task out, by rules."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from mintpilot.core.errors import InputError
+from mintpilot.core.task import Action, SubGoal, Task
+from mintpilot.language import Capabilities, parse_instruction
+
+from .instructions import PARAPHRASES, PLAIN, REFUSED
+
+HOME_M = (0.0, 0.0, 1.0)
+
+
+def written(task: Task) -> tuple[str, ...]:
+    steps = [_step(subgoal) for subgoal in task.subgoals]
+    avoided = [f"{'avoid' if a.strict else 'spare'} {a.kind}" for a in task.avoid]
+    return (*steps, *(["people"] if task.seeks_people else []), *avoided)
+
+
+def _step(subgoal: SubGoal) -> str:
+    reference = subgoal.reference
+    words = [str(subgoal.action), reference.label, *(f"{a.name or '?'}={a.value}" for a in reference.attributes)]
+    if reference.position_m is not None:
+        words.append("@" + ",".join(f"{x:g}" for x in reference.position_m))
+    if subgoal.dwell_s != SubGoal(action=Action.GO, reference=reference).dwell_s:
+        words.append(f"dwell={subgoal.dwell_s:g}")
+    return " ".join(word for word in [*words, "*" if reference.every else ""] if word)
+
+
+@pytest.mark.parametrize(("text", "expected"), [*PLAIN.items(), *PARAPHRASES.items()])
+def test_instructions_are_understood(text: str, expected: tuple[str, ...]) -> None:
+    home_m = HOME_M if "back" in text.split() else None
+    task = parse_instruction(text, home_m=home_m)
+    assert written(task) == expected
+    assert task.instruction == text
+
+
+@pytest.mark.parametrize(("text", "reason"), REFUSED.items())
+def test_what_is_unclear_or_impossible_is_refused_with_its_reason(text: str, reason: str) -> None:
+    with pytest.raises(InputError, match=reason):
+        parse_instruction(text)
+
+
+def test_there_are_forty_of_them_and_half_are_paraphrases() -> None:
+    assert len(PLAIN) >= 20
+    assert len(PARAPHRASES) >= 20
+
+
+def test_a_vehicle_without_a_gripper_is_not_sent_to_pick_things_up() -> None:
+    eyes_only = Capabilities(actions=frozenset({Action.GO, Action.LOOK}))
+    with pytest.raises(InputError, match=r"pick up at the box.*can only go to, look into"):
+        parse_instruction("pick up the box", eyes_only)
+    assert parse_instruction("find the box", eyes_only).subgoals[0].action is Action.GO
+
+
+def test_an_endless_instruction_is_refused() -> None:
+    with pytest.raises(InputError, match="keep it under"):
+        parse_instruction("go to the box and " * 400 + "go to the box")
+
+
+@settings(deadline=None, max_examples=200)
+@given(
+    st.one_of(
+        st.text(max_size=80),
+        st.lists(
+            st.sampled_from(
+                sorted(
+                    {
+                        *"go to the box and , . ; ( 3".split(),
+                        "it",
+                        "or",
+                        "red",
+                        "bring",
+                        "rooms",
+                        "every",
+                        "if",
+                        "smoke",
+                        "avoid",
+                        "check",
+                        "anyone",
+                    }
+                )
+            ),
+            max_size=14,
+        ).map(" ".join),
+    )
+)
+def test_any_text_is_a_task_or_a_reason(text: str) -> None:
+    try:
+        task = parse_instruction(text)
+    except InputError as error:
+        assert str(error)
+    else:
+        assert task.subgoals
+        assert all(g.reference.position_m is not None or g.reference.label for g in task.subgoals)
