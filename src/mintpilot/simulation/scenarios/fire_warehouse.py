@@ -1,0 +1,301 @@
+"""The paper's simulated disaster: an on-fire warehouse, an injured person, a cloud of smoke and a closed room.
+
+What the paper says (section "Simulation Experiments"): a region covered by volumetric smoke that may be toxic or may be
+a shortcut, a closed room that may or may not hold a second victim, and a spatial configuration of both that varies
+relative to the optimal path, so that they matter in some worlds and not in others. All defaults below follow from that
+description; none was chosen for its effect on a result. Where the paper gives no figure, the choice is an even one
+(each kind of place for the smoke a third, each place for the room alike, both priors one half).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from mintpilot.core.errors import MissionError
+from mintpilot.core.geometry import Box, Vec3
+from mintpilot.core.mission import Mission
+from mintpilot.core.plan import VehicleLimits
+from mintpilot.simulation.scenarios.floor import Floor, block, gap_m, standing
+from mintpilot.simulation.scenarios.furniture import add_clutter, add_racks
+from mintpilot.simulation.scenarios.hall_plan import (
+    ROOM_PLACES,
+    VOLUME,
+    WALL_M,
+    HallPlan,
+    Way,
+    draw_plan,
+    room_place,
+)
+from mintpilot.simulation.scenarios.scenario import Scenario, check_numbers, read_parameters
+from mintpilot.simulation.scene import ClosedRoom, FlightRules, Person, Scene, Shape, Smoke, Solid
+
+NAME = "fire-warehouse"
+INSTRUCTION = "Find the injured person in the burning warehouse and check whether anyone else is hurt."
+START_HEIGHT_M = 1.2
+STAY_S = 2.0
+"""How long the drone stays with the person; counted in the shortest mission."""
+SMOKE_KINDS = ("on-way", "other-way", "off-way")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FireWarehouseParameters:
+    """What a fire-warehouse is drawn from."""
+
+    prior_toxic: float = 0.5
+    """Probability that a cloud is toxic; its truth is drawn from it."""
+    prior_occupied: float = 0.5
+    """Probability that somebody is in a closed room; its truth is drawn from it."""
+    smokes: int = 1
+    """Number of clouds (the paper: one)."""
+    rooms: int = 1
+    """Number of closed rooms (the paper: one); at most four."""
+    on_way: float = 1 / 3
+    """Probability that a cloud fills a gate or hall of the shortest way."""
+    other_way: float = 1 / 3
+    """Probability that it fills a gate or hall of another way. What is left: somewhere off every way."""
+    link: float = 0.5
+    """Probability that the two halls are joined by a gate of their own: four ways instead of two."""
+    endurance_least: float = 1.3
+    """The battery lasts for at least this multiple of the shortest mission's time (smoke harmless, room empty)."""
+    endurance_most: float = 2.6
+    """… and for at most this one. Drawn evenly in between, independently of the truths."""
+    reserve: float = 0.25
+    """Share of the battery that plans leave for braking, corners and gusts: costs are lengths at cruise speed."""
+    cruise_mps: float = 1.5
+    """Cruise speed."""
+    gate_m: float = 2.0
+    """Width of gates; they reach up to the roof."""
+
+    def __post_init__(self) -> None:
+        probabilities = ("prior_toxic", "prior_occupied", "on_way", "other_way", "link", "reserve")
+        check_numbers(self, probabilities=probabilities, positive=("endurance_least", "cruise_mps"))
+        if self.on_way + self.other_way > 1:
+            raise MissionError(f"on_way {self.on_way} + other_way {self.other_way}: together at most 1")
+        if not (self.smokes == int(self.smokes) and 0 <= self.smokes <= 6):
+            raise MissionError(f"smokes = {self.smokes}: must be a whole number from 0 to 6")
+        if not (self.rooms == int(self.rooms) and 0 <= self.rooms <= 4):
+            raise MissionError(f"rooms = {self.rooms}: must be a whole number from 0 to 4")
+        if not self.endurance_least <= self.endurance_most:
+            raise MissionError(
+                f"endurance_least {self.endurance_least} is above endurance_most {self.endurance_most}: swap them"
+            )
+        if not 1.6 <= self.gate_m <= 2.4:
+            raise MissionError(f"gate_m = {self.gate_m}: must be from 1.6 to 2.4 m, or gates clash with walls")
+        if not self.reserve < 1:
+            raise MissionError(f"reserve = {self.reserve}: must be below 1, or nothing is left to fly with")
+
+
+def fire_warehouse(seed: int, **parameters: float) -> Scenario:
+    """Draws one fire-warehouse; the same seed and parameters give the same world.
+
+    Truths (toxic, occupied) and endurance come from random streams of their own: neither changes the floor plan.
+
+    Args:
+        seed: 0 or above.
+        **parameters: fields of `FireWarehouseParameters`.
+
+    Raises:
+        UnknownNameError: a parameter is not known.
+        MissionError: a parameter's value breaks a rule.
+    """
+    p = read_parameters(FireWarehouseParameters, parameters, NAME)
+    layout, truth, battery, looks = (np.random.default_rng(s) for s in np.random.SeedSequence(seed).spawn(4))
+    plan = draw_plan(layout, gate_m=p.gate_m, link_probability=p.link)
+    places = tuple(ROOM_PLACES[i] for i in layout.permutation(len(ROOM_PLACES))[: int(p.rooms)])
+    rooms = tuple(_room(plan, place, i, p, truth) for i, place in enumerate(places))
+    start = (float(layout.uniform(1.0, 2.0)), float(layout.uniform(5.0, 10.0)))
+    floor = Floor(taken=[*plan.partitions(), *(r.extent_m for r in rooms)])
+    floor.keep_clear([(r.viewpoint_m[0], r.viewpoint_m[1]) for r in rooms], 1.5)
+    goal = _person_place(floor, layout)
+    ways = plan.ways(start, goal)
+    _keep_open(floor, plan, ways, start, goal)
+    racks = add_racks(floor, plan, places, layout)
+    smokes, kinds = _smokes(floor, plan, ways, rooms, p, layout, truth)
+    fires = _fires(floor, smokes, layout)
+    scene = Scene(
+        name=NAME,
+        volume=VOLUME,
+        start_m=(*start, START_HEIGHT_M),
+        solids=(*_walls(plan), *racks, *fires, *add_clutter(floor, plan, looks)),
+        smokes=smokes,
+        rooms=rooms,
+        persons=(Person(id="injured", position_m=(*goal, 0.0), yaw_rad=float(looks.uniform(-math.pi, math.pi))),),
+        seed=seed,
+    )
+    shortest_s = ways[0].length_m / p.cruise_mps + STAY_S
+    planned_s = shortest_s * float(battery.uniform(p.endurance_least, p.endurance_most))
+    notes: dict[str, str | float] = {
+        "smoke_places": ",".join(kinds),
+        "room_places": ",".join(places),
+        "shortest_way": ways[0].name,
+        "shortest_s": shortest_s,
+    }
+    return Scenario(
+        scene=scene,
+        mission=_mission(scene, p, planned_s),
+        rules=FlightRules(endurance_s=planned_s / (1 - p.reserve)),
+        parameters=p,
+        notes=notes,
+    )
+
+
+def _mission(scene: Scene, p: FireWarehouseParameters, planned_s: float) -> Mission:
+    return Mission(
+        name=NAME,
+        instruction=INSTRUCTION,
+        start_m=scene.start_m,
+        volume=scene.volume,
+        limits=VehicleLimits(cruise_mps=p.cruise_mps, endurance_s=planned_s),
+        prior_passable=1 - p.prior_toxic,
+        prior_occupied=p.prior_occupied,
+    )
+
+
+def _room(plan: HallPlan, place: str, index: int, p: FireWarehouseParameters, truth: np.random.Generator) -> ClosedRoom:
+    walls, door, viewpoint = room_place(plan, place)
+    occupied = bool(truth.random() < p.prior_occupied)
+    inward = math.copysign(1.0, door.centre_m[1] - viewpoint[1])
+    lying: Vec3 = (door.centre_m[0], door.centre_m[1] + inward * 1.9, 0.0)
+    occupant = Person(id=f"trapped-{index + 1}", position_m=lying) if occupied else None
+    return ClosedRoom(
+        id=f"room-{index + 1}",
+        extent_m=walls,
+        door_m=door,
+        viewpoint_m=viewpoint,
+        occupant=occupant,
+        prior_occupied=p.prior_occupied,
+    )
+
+
+def _person_place(floor: Floor, rng: np.random.Generator) -> tuple[float, float]:
+    """In the open in the east, a body's length away from walls and doors."""
+
+    def draw(rng: np.random.Generator) -> Box:
+        return standing((float(rng.uniform(17.0, 18.4)), float(rng.uniform(1.6, 13.4))), (0.2, 0.2, 0.3), VOLUME)
+
+    place = Floor(taken=[*floor.taken], clear=[*floor.clear]).place(rng, draw, spacing_m=1.4)
+    if place is None:
+        raise MissionError("no place is left for the injured person: ask for fewer rooms")
+    return (place.centre_m[0], place.centre_m[1])
+
+
+def _keep_open(
+    floor: Floor, plan: HallPlan, ways: tuple[Way, ...], start: tuple[float, float], goal: tuple[float, float]
+) -> None:
+    """Nothing may stand on the ways outside the halls, in or before a gate, at the start or next to the person."""
+    for way in ways:
+        floor.keep_way_clear(way.points[:2], 0.9)
+        floor.keep_way_clear(way.points[-2:], 0.9)
+    half = plan.gate_m / 2
+    for _, x, y in plan.gates:
+        floor.clear.append((block((x - 1.2, x + 1.2), (y - half, y + half), (0.0, 0.0)), 0.1))
+    if plan.link_x_m is not None:
+        x, y = plan.link_x_m, plan.y_m + WALL_M / 2
+        floor.clear.append((block((x - half, x + half), (y - 1.2, y + 1.2), (0.0, 0.0)), 0.1))
+    floor.keep_clear([start], 1.2)
+    floor.keep_clear([goal], 1.9)
+
+
+def _walls(plan: HallPlan) -> tuple[Solid, ...]:
+    return tuple(Solid(id=f"partition-{i + 1}", kind="partition", extent_m=b) for i, b in enumerate(plan.partitions()))
+
+
+def _smokes(
+    floor: Floor,
+    plan: HallPlan,
+    ways: tuple[Way, ...],
+    rooms: tuple[ClosedRoom, ...],
+    p: FireWarehouseParameters,
+    layout: np.random.Generator,
+    truth: np.random.Generator,
+) -> tuple[tuple[Smoke, ...], list[str]]:
+    """Clouds from floor to roof, each at a place of a drawn kind, or of the next kind where that has none left."""
+    smokes: list[Smoke] = []
+    kinds = []
+    for index in range(int(p.smokes)):
+        drawn = float(layout.random())
+        first = 0 if drawn < p.on_way else 1 if drawn < p.on_way + p.other_way else 2
+        for kind in (*SMOKE_KINDS[first:], *SMOKE_KINDS[:first]):
+            spots = _spots(floor, plan, ways, kind, layout)
+            spots = [s for s in spots if _is_apart(s, smokes, rooms)]
+            if spots:
+                extent = spots[int(layout.integers(len(spots)))]
+                toxic = bool(truth.random() < p.prior_toxic)
+                smokes.append(
+                    Smoke(id=f"smoke-{index + 1}", extent_m=extent, toxic=toxic, prior_safe=1 - p.prior_toxic)
+                )
+                kinds.append(kind)
+                break
+    return tuple(smokes), kinds
+
+
+def _is_apart(extent: Box, smokes: list[Smoke], rooms: tuple[ClosedRoom, ...]) -> bool:
+    """Clouds keep apart from each other, and from rooms and the places before their doors."""
+    views = [block((r.viewpoint_m[0],) * 2, (r.viewpoint_m[1],) * 2, (0.0, 0.0)) for r in rooms]
+    return (
+        all(gap_m(extent, s.extent_m) > 1.2 for s in smokes)
+        and all(gap_m(extent, r.extent_m) > 0.4 for r in rooms)
+        and all(gap_m(extent, view) > 1.0 for view in views)
+    )
+
+
+def _spots(floor: Floor, plan: HallPlan, ways: tuple[Way, ...], kind: str, rng: np.random.Generator) -> list[Box]:
+    """Possible extents of a cloud of that kind."""
+    if kind == "off-way":
+        spare = Floor(taken=[*floor.taken], clear=[*floor.clear])
+        for way in ways:
+            spare.keep_way_clear(way.points, 1.3)
+        found = spare.place(rng, _corner_cloud, spacing_m=0.0)
+        return [found] if found else []
+    best = ways[0].passes
+    passages = sorted({name for way in ways for name in way.passes})
+    wanted = [name for name in passages if (name in best) == (kind == "on-way")]
+    return [_cloud_in(plan, name, rng) for name in wanted]
+
+
+def _cloud_in(plan: HallPlan, passage: str, rng: np.random.Generator) -> Box:
+    """A cloud that fills a gate, or a stretch of a hall from wall to wall."""
+    height = (0.0, VOLUME.hi_m[2])
+    if passage.startswith("hall-"):
+        hall = plan.hall(passage.removeprefix("hall-"))
+        long = float(rng.uniform(2.2, 3.2))
+        x = float(rng.uniform(hall.lo_m[0] + 1.6, hall.hi_m[0] - 1.6 - long))
+        return block((x, x + long), (hall.lo_m[1], hall.hi_m[1]), height)
+    x, y = plan.gate(passage)
+    before, behind, south, north = (float(v) for v in rng.uniform((1.0, 1.0, 0.6, 0.6), (1.6, 1.6, 1.2, 1.2)))
+    half = plan.gate_m / 2
+    low, high = (0.0, plan.y_m) if passage.endswith("south") else (plan.y_m + WALL_M, VOLUME.hi_m[1])
+    return block((x - before, x + behind), (max(y - half - south, low), min(y + half + north, high)), height)
+
+
+def _corner_cloud(rng: np.random.Generator) -> Box:
+    """A cloud in the west or the east, anywhere."""
+    x, y = (
+        float(rng.uniform(17.0, 18.8) if rng.random() < 0.5 else rng.uniform(1.2, 4.6)),
+        float(rng.uniform(1.2, 13.8)),
+    )
+    size = rng.uniform(2.0, 2.8, 2)
+    return standing((x, y), (float(size[0]), float(size[1]), VOLUME.hi_m[2]), VOLUME)
+
+
+def _fires(floor: Floor, smokes: tuple[Smoke, ...], rng: np.random.Generator) -> tuple[Solid, ...]:
+    """One fire in or next to each cloud, where there is room for it; never so high that it cannot be flown over."""
+    fires: list[Solid] = []
+    for smoke in smokes:
+        (x0, y0, _), (x1, y1, _) = smoke.extent_m.lo_m, smoke.extent_m.hi_m
+
+        def draw(rng: np.random.Generator, spans: tuple[float, ...] = (x0, x1, y0, y1)) -> Box:
+            centre = (
+                float(rng.uniform(spans[0] - 0.8, spans[1] + 0.8)),
+                float(rng.uniform(spans[2] - 0.8, spans[3] + 0.8)),
+            )
+            wide = float(rng.uniform(1.0, 1.4))
+            return standing(centre, (wide, wide, float(rng.uniform(1.2, 1.6))), VOLUME)
+
+        place = floor.place(rng, draw)
+        if place is not None:
+            fires.append(Solid(id=f"fire-{len(fires) + 1}", kind="fire", extent_m=place, shape=Shape.BOX))
+    return tuple(fires)
