@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import sys
 import traceback
 from collections.abc import Callable
@@ -54,22 +55,33 @@ def guarded(work: Callable[[], ExitCode], *, as_json: bool, debug: bool) -> Exit
     """
     try:
         return work()
-    except KeyboardInterrupt:
-        code, kind, message = ExitCode.INTERRUPTED, "Interrupted", "stopped by Ctrl-C"
     except BrokenPipeError:
         # Whoever read our output went away (a pager was closed): nothing is left to say, nor anybody to hear it.
-        sys.stdout = None
+        sys.stdout = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115, PTH123
         return ExitCode.SUCCESS
-    except MintPilotError as error:
-        code, kind, message = _code_of(error), type(error).__name__, str(error)
-    except MemoryError:
-        code, kind, message = ExitCode.WRONG_INPUT, "MemoryError", "not enough memory; make the map smaller or coarser"
-    except Exception as error:  # the last resort: a user must never meet a bare traceback
-        code, kind = ExitCode.DEFECT, type(error).__name__
-        message = f"a defect of MintPilot: {kind}: {error}; run again with --debug and report what it shows"
-    if debug:
-        traceback.print_exc()
-    return fail(message, as_json=as_json, code=code, kind=kind)
+    except (Exception, KeyboardInterrupt) as error:  # the last resort: a user must never meet a bare traceback
+        if debug:
+            traceback.print_exc()
+        code, message = verdict_on(error)
+        return fail(message, as_json=as_json, code=code, kind=type(error).__name__)
+
+
+def verdict_on(error: BaseException) -> tuple[ExitCode, str]:
+    """The exit code and the words for whatever went wrong."""
+    if isinstance(error, KeyboardInterrupt):
+        return ExitCode.INTERRUPTED, "stopped by Ctrl-C"
+    if isinstance(error, MissingPartError):
+        return ExitCode.MISSING_PART, str(error)
+    if isinstance(error, DeviceError | RecordError):
+        return ExitCode.FAILED_DEVICE, str(error)
+    if isinstance(error, MintPilotError):
+        return ExitCode.WRONG_INPUT, str(error)
+    if isinstance(error, MemoryError):
+        return ExitCode.WRONG_INPUT, "not enough memory; make the map smaller or coarser"
+    return (
+        ExitCode.DEFECT,
+        f"a defect of MintPilot: {type(error).__name__}: {error}; run again with --debug and report what it shows",
+    )
 
 
 def fail(message: str, *, as_json: bool, code: ExitCode = ExitCode.WRONG_INPUT, kind: str = "InputError") -> ExitCode:
@@ -80,11 +92,3 @@ def fail(message: str, *, as_json: bool, code: ExitCode = ExitCode.WRONG_INPUT, 
         report = {"schema_version": ERROR_SCHEMA_VERSION, "outcome": "error", "error": failure}
         print(json.dumps(report, ensure_ascii=False))
     return code
-
-
-def _code_of(error: MintPilotError) -> ExitCode:
-    if isinstance(error, MissingPartError):
-        return ExitCode.MISSING_PART
-    if isinstance(error, DeviceError | RecordError):
-        return ExitCode.FAILED_DEVICE
-    return ExitCode.WRONG_INPUT

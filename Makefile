@@ -1,0 +1,52 @@
+# Everything a newcomer needs. `make` alone lists the targets.
+
+MISSION ?= fire-warehouse
+ARGS ?=
+BIN := .venv/bin
+
+.DEFAULT_GOAL := help
+.PHONY: help demo test setup setup-run fix check bench table docs results ci clean
+
+help: ## list the targets
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-9s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+
+demo: setup-run ## fly a mission of the paper and show it (MISSION=fire-warehouse or medicine, ARGS="--headless --seed 3")
+	@$(BIN)/mintpilot demo $(MISSION) $(ARGS)
+
+test: setup ## run the tests (ARGS="-m slow" for the long ones)
+	@$(BIN)/python -m pytest $(ARGS)
+
+setup: ## make .venv and install everything, the developer's tools included; quick when nothing changed
+	@scripts/setup.sh dev
+
+setup-run:
+	@scripts/setup.sh run
+
+fix: setup ## format, and mend what can be mended
+	@$(BIN)/ruff format
+	@$(BIN)/ruff check --fix
+
+check: setup ## formatting, lint, types and import rules
+	@$(BIN)/ruff format --check
+	@$(BIN)/ruff check
+	@$(BIN)/mypy
+	@$(BIN)/lint-imports
+
+bench: setup ## compare the strategies; records go to runs/bench
+	@$(BIN)/python -m bench.run $(ARGS)
+
+table: setup ## make the tables and plots from those records
+	@$(BIN)/python -m bench.table $(ARGS)
+
+results: setup ## measure what docs/results.md states, and write it
+	@$(BIN)/python -m bench.results $(ARGS)
+
+docs: setup ## generate docs/cli.md, docs/mission.schema.json and the example map
+	@$(BIN)/python scripts/make_docs.py
+
+ci: ## what the continuous integration runs
+	@.ci/run
+
+clean: ## remove .venv, caches and runs
+	@rm -rf .venv runs .mypy_cache .ruff_cache .pytest_cache .hypothesis .import_linter_cache
+	@find src tests bench -name __pycache__ -type d -prune -exec rm -rf {} +
