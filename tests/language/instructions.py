@@ -1,6 +1,6 @@
 """Instructions with the parses expected of them.
 
-A step is written ``action noun name=value … @x,y,z``, with ``*`` for every match; ``?`` stands for an unnamed attribute.
+A step is written ``action noun name=value … @x,y,z``, with ``*`` for every match; ``?`` is an unnamed attribute.
 ``people`` means that everybody who is hurt is sought; ``avoid smoke`` is strict, ``spare smoke`` a wish.
 """
 

@@ -62,38 +62,42 @@ def test_an_endless_instruction_is_refused() -> None:
         parse_instruction("go to the box and " * 400 + "go to the box")
 
 
-@settings(deadline=None, max_examples=200)
-@given(
-    st.one_of(
-        st.text(max_size=80),
-        st.lists(
-            st.sampled_from(
-                sorted(
-                    {
-                        *"go to the box and , . ; ( 3".split(),
-                        "it",
-                        "or",
-                        "red",
-                        "bring",
-                        "rooms",
-                        "every",
-                        "if",
-                        "smoke",
-                        "avoid",
-                        "check",
-                        "anyone",
-                    }
-                )
-            ),
-            max_size=14,
-        ).map(" ".join),
-    )
+WORDS = st.sampled_from(
+    [
+        "go",
+        "to",
+        "the",
+        "box",
+        "and",
+        ",",
+        ".",
+        ";",
+        "(",
+        "3",
+        "it",
+        "or",
+        "red",
+        "bring",
+        "rooms",
+        "every",
+        "if",
+        "smoke",
+        "avoid",
+        "check",
+        "anyone",
+        "from",
+        "pick",
+        "up",
+    ]
 )
+
+
+@settings(deadline=None, max_examples=200)
+@given(st.text(max_size=80) | st.lists(WORDS, max_size=14).map(" ".join))
 def test_any_text_is_a_task_or_a_reason(text: str) -> None:
     try:
         task = parse_instruction(text)
-    except InputError as error:
-        assert str(error)
-    else:
-        assert task.subgoals
-        assert all(g.reference.position_m is not None or g.reference.label for g in task.subgoals)
+    except InputError:
+        return
+    assert task.subgoals
+    assert all(g.reference.position_m is not None or g.reference.label for g in task.subgoals)

@@ -24,6 +24,7 @@ OBJECTS = (
     thing("box-2", "box", (9, 9, 0.2), edge_m=0.9, colour="blue"),
     thing("box-3", "box", (14, 11, 0.2), edge_m=0.5, colour="grey"),
     thing("rack-1", "rack", (14, 9.5, 1.0), edge_m=1.0, colour="red"),
+    thing("ext-1", "fire extinguisher", (19, 1, 0.5)),
     thing("drum-1", "barrel", (3, 12, 0.5), colour="blue", pattern=["striped", "dotted"]),
 )
 
@@ -57,6 +58,7 @@ def found(phrase: str, label: str, **attributes: str) -> list[str]:
         ("box", {"contents": "medicine"}, ["box-1", "box-2", "box-3"]),
         ("", {"": "striped"}, ["drum-1"]),
         ("helicopter", {}, []),
+        ("extinguisher", {"": "fire"}, ["ext-1"]),
     ],
 )
 def test_phrases_mean_what_fits(label: str, attributes: dict[str, str], expected: list[str]) -> None:

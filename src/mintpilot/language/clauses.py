@@ -11,22 +11,8 @@ from mintpilot.core.geometry import Vec3
 from mintpilot.core.observation import Attribute
 from mintpilot.core.task import Action, Reference, SubGoal
 from mintpilot.language import lexicon
+from mintpilot.language.patterns import AT, BRING, DROP, FIND, FROM, GO, HOME, LOOK, PICK, SECONDS, SOMEBODY, TO, WAIT
 from mintpilot.language.phrases import parse_phrase
-
-_PICK = r"(?:pick up|pick|grab|take|collect|fetch|get|retrieve|lift|bring|carry|deliver|transport)"
-_BRING = r"(?:bring|take|carry|deliver|give|hand|transport|get|fly|return)"
-_FROM = r"(?:from|out of|off|inside|in)"
-_TO = r"(?<!next )(?<!close )(?:over to|up to|back to|to|onto)"
-_GO = (
-    r"(?:go and find|go|fly|move|head|navigate|travel|proceed|come|drive|return|hover|wait|continue)"
-    r"(?: straight| directly| over| up| back| on)*(?: to| towards| toward| over| at| above| next to| near| by)"
-)
-_FIND = (
-    r"(?:find|locate|search for|look for|seek|rescue|reach|approach|visit|inspect|look at|check on|check|go and see|"
-    r"see to|attend to|get to|help|save|track down)"
-)
-_LOOK = r"(?:look into|look inside|look in|peek into|peek in|check|search|inspect|examine|clear|scan|sweep|visit|go through)"
-_HOME = r"(?:come|go|fly|return|head|get)(?: straight)? (?:back|home|back home|to base|back to base|to the pad|to the start|to start)(?: to .*)?"
 
 
 @dataclass(slots=True, kw_only=True)
@@ -143,20 +129,20 @@ def _wait(reading: Reading, *, seconds: str, unit: str) -> bool:
 _PATTERNS: tuple[tuple[re.Pattern[str], Callable[..., bool]], ...] = tuple(
     (re.compile(pattern), read)
     for pattern, read in (
-        (_HOME, _home),
-        (r"(?:wait|hover|stay|hold|remain)(?: there| here)?(?: for)? (?P<seconds>\d+(?:\.\d+)?) ?(?P<unit>s|sec\w*|min\w*)", _wait),
-        (rf"{_BRING} (?P<thing>.+?) {_FROM} (?P<source>.+?) {_TO} (?P<goal>.+)", _move),
-        (rf"{_BRING} (?P<goal>him|her|them|the \w+ (?:person|man|woman|victim)|the (?:person|victim|man|woman)) (?P<thing>the .+?|it) {_FROM} (?P<source>.+)", _move),
-        (rf"{_BRING} (?P<goal>the \w+ (?:person|man|woman|victim)|the (?:person|victim|man|woman)) (?P<thing>the .+|it|some .+|a .+)", _move),
-        (rf"{_BRING} (?P<thing>.+?) {_TO} (?P<goal>.+)", _move),
-        (r"(?:drop|put|place|leave|set|release)(?: down| off)? (?P<thing>.+?)(?: down| off)? (?:to|at|by|near|next to|beside|with|in front of) (?P<goal>.+)", _drop),
-        (rf"{_PICK} (?P<thing>.+?) {_FROM} (?P<source>.+)", _pick),
-        (rf"{_PICK} (?P<thing>.+?)(?: up)?", _pick),
-        (rf"{_LOOK} (?P<place>.+)", _look),
-        (rf"{_FIND} (?P<place>.+)", _go),
-        (rf"{_GO} (?P<place>.+)", _go),
-        (r"go (?P<place>there)", _go),
-        (r"(?:on )?to (?P<place>.+)", _go_on),
-        (r"(?P<place>(?:the|every|each|all) .+)", _same),
+        (HOME, _home),
+        (f"{WAIT} {SECONDS}", _wait),
+        (f"{BRING} (?P<thing>.+?) {FROM} (?P<source>.+?) {TO} (?P<goal>.+)", _move),
+        (f"{BRING} (?P<goal>{SOMEBODY}) (?P<thing>the .+?|it) {FROM} (?P<source>.+)", _move),
+        (f"{BRING} (?P<goal>{SOMEBODY}) (?P<thing>the .+|it|some .+|a .+)", _move),
+        (f"{BRING} (?P<thing>.+?) {TO} (?P<goal>.+)", _move),
+        (f"{DROP} (?P<thing>.+?)(?: down| off)? {AT} (?P<goal>.+)", _drop),
+        (f"{PICK} (?P<thing>.+?) {FROM} (?P<source>.+)", _pick),
+        (f"{PICK} (?P<thing>.+?)(?: up)?", _pick),
+        (f"{LOOK} (?P<place>.+)", _look),
+        (f"{FIND} (?P<place>.+)", _go),
+        (f"{GO} (?P<place>.+)", _go),
+        ("go (?P<place>there)", _go),
+        ("(?:on )?to (?P<place>.+)", _go_on),
+        ("(?P<place>(?:the|every|each|all) .+)", _same),
     )
-)  # fmt: skip
+)

@@ -13,50 +13,12 @@ from dataclasses import dataclass
 from mintpilot.core.errors import InputError
 from mintpilot.core.geometry import Vec3
 from mintpilot.core.task import Action, Avoidance, Reference, SubGoal, Task
-from mintpilot.language import lexicon
+from mintpilot.language import lexicon, patterns
 from mintpilot.language.clauses import Reading, read_clause
 from mintpilot.language.phrases import parse_phrase
 
 _LONGEST = 600
 _DOING = {Action.GO: "go to", Action.PICK: "pick up at", Action.DELIVER: "deliver to", Action.LOOK: "look into"}
-_SOFT = (
-    r"(?P<soft> (?:if|when|where|whenever) (?:you can|possible|it is possible|you are able to)| as far as possible)?"
-)
-_POLITE = re.compile(
-    r"^(?:(?:please|kindly|hey|hello|hi|ok|okay|now|first|next|then|also|and|finally|lastly|afterwards|after that|drone|"
-    r"so|you should|you must|you need to|could you|can you|would you|will you|i want you to|i need you to|"
-    r"i would like you to|i'd like you to|we need you to|we need to|your task is to|your mission is to|try to|go and(?= \w+ (?!find)))\b\s*,?\s*)+"
-)
-_TRAILING = re.compile(r"\s*,?\s*(?:please|thanks|thank you|now|quickly|immediately|as fast as you can|right away)$")
-_AVOID = re.compile(
-    r"(?:,? ?(?:and|but|while|then)? ?)"
-    r"(?:skip|skipping|avoid|avoiding|stay out of|staying out of|stay away from|staying away from|stay clear of|"
-    r"keep out of|keep away from|keep clear of|keeping clear of|(?:do not|don't|never) (?:fly|go|pass) (?:through|into)|"
-    r"(?:do not|don't|never) enter|without (?:flying|going|passing) (?:through|into)|without entering)"
-    rf" (?:the |any |all |every )?(?P<what>[a-z ]+?){_SOFT}(?=$|[,.;]| and | then | but )"
-)
-_WHO = r"(?:any ?one|any ?body|some ?one|some ?body|other people|others|any other people|any (?:other |more )?(?:victims|survivors|casualties|people))"
-_SEEK = re.compile(
-    rf"(?:check|see|find out|make sure|look|determine|verify)(?: to see)?(?: whether| if| for| that)? (?:there (?:is|are|might be) )?"
-    rf"(?:{_WHO}|no ?body|no one)(?: else)?(?: (?:is|are|may be|might be|was|has been|who is|was left|is left))?"
-    r"(?: (?:hurt|injured|wounded|there|left|trapped|left behind|behind|missing|in need of help|still inside|inside|in there))*"
-    r"(?: (?:in|inside) the (?:\w+ )?\w+)?"
-)
-_SEEK_IN = re.compile(
-    r"(?:search|scan|sweep|check|comb|look through|explore) (?P<where>.+?) for (?:any ?one|any ?body|some ?one|some ?body|people|"
-    r"(?:any )?(?:survivors|victims|casualties|injured people|hurt people|injured|people))(?: (?:hurt|injured|else|who is hurt))*"
-)
-_VERBS = (
-    "pick grab take collect fetch get retrieve lift bring carry deliver give hand transport drop put place leave go fly "
-    "move head navigate travel proceed come return hover wait stay find locate search look seek rescue reach approach "
-    "visit inspect check see peek examine clear scan sweep help save make land open close push pull extinguish "
-    "photograph film follow shoot attack avoid skip keep hold then set tell turn explore determine verify continue do "
-    "never repair call spray throw break crash hit ram dig drive swim talk comb release remain attend track"
-)
-_SPLIT = re.compile(
-    rf"\s*(?:;|\.(?=\s|$)|,? and (?:then|after that|afterwards|finally|also) |,? then |, and |,? after that |,| and )\s*(?=(?:{'|'.join(_VERBS.split())}|please|finally|afterwards)\b)"
-    r"|\s*(?:;|\.(?=\s|$))\s*"
-)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -111,18 +73,21 @@ def _normal(text: str) -> str:
 
 def _avoidances(words: str) -> tuple[str, tuple[Avoidance, ...]]:
     found: list[Avoidance] = []
-    for match in _AVOID.finditer(words):
+    for match in patterns.AVOID.finditer(words):
         what = match["what"].strip()
         kind = next((k for word, k in lexicon.AVOIDED.items() if re.search(rf"\b{word}\b", what)), None)
         if kind is None and not set(what.split()) & lexicon.NEVER_TOUCHED:
             raise InputError(f"'{what}' cannot be avoided by name: only smoke, doors and areas marked on the map can")
         if kind is not None:
             found.append(Avoidance(kind=kind, strict=match["soft"] is None))
-    return _AVOID.sub(" ", words).strip(" ,.;"), tuple(dict.fromkeys(found))
+    return patterns.AVOID.sub(" ", words).strip(" ,.;"), tuple(dict.fromkeys(found))
 
 
 def _clauses(words: str) -> list[str]:
-    parts = (_TRAILING.sub("", _POLITE.sub("", part.strip(" ,.!?"))).strip(" ,.!?") for part in _SPLIT.split(words))
+    parts = (
+        patterns.TRAILING.sub("", patterns.POLITE.sub("", part.strip(" ,.!?"))).strip(" ,.!?")
+        for part in patterns.SPLIT.split(words)
+    )
     return [part for part in parts if part and part not in ("and", "then", "please", "finally", "do", "it")]
 
 
@@ -133,9 +98,9 @@ def _parts(clause: str) -> list[str]:
 
 def _seeks_people(clause: str, reading: Reading) -> bool:
     """Whether the clause asks to look for whoever is hurt; a place named in it is looked into."""
-    if _SEEK.fullmatch(clause):
+    if patterns.SEEK.fullmatch(clause):
         return True
-    found = _SEEK_IN.fullmatch(clause)
+    found = patterns.SEEK_IN.fullmatch(clause)
     if found is None:
         return False
     place = parse_phrase(found["where"])

@@ -4,6 +4,11 @@ from __future__ import annotations
 
 from mintpilot.core.observation import RegionKind
 
+
+def _words(text: str) -> frozenset[str]:
+    return frozenset(text.split())
+
+
 ADJECTIVES: dict[str, tuple[str, str]] = {
     **{
         word: ("colour", word)
@@ -13,8 +18,8 @@ ADJECTIVES: dict[str, tuple[str, str]] = {
         )
     },
     "gray": ("colour", "grey"),
-    **{word: ("size", "small") for word in ("small", "little", "tiny")},
-    **{word: ("size", "large") for word in ("large", "big", "huge")},
+    **dict.fromkeys(("small", "little", "tiny"), ("size", "small")),
+    **dict.fromkeys(("large", "big", "huge"), ("size", "large")),
     "medium": ("size", "medium"),
     "tall": ("height", "tall"),
     "round": ("shape", "spherical"),
@@ -24,7 +29,7 @@ ADJECTIVES: dict[str, tuple[str, str]] = {
     "cubic": ("shape", "cubic"),
     "flat": ("shape", "flat"),
     "long": ("shape", "long"),
-    **{word: ("condition", "injured") for word in ("injured", "hurt", "wounded", "trapped", "unconscious")},
+    **dict.fromkeys(("injured", "hurt", "wounded", "trapped", "unconscious"), ("condition", "injured")),
     **{word: ("material", word) for word in ("wooden", "metal", "plastic", "cardboard")},
     **{word: ("pattern", word) for word in ("striped", "dotted", "checked")},
     "nearest": ("extreme", "nearest"),
@@ -44,26 +49,24 @@ ADJECTIVES: dict[str, tuple[str, str]] = {
 }  # fmt: skip
 """Word → name and value of the attribute that it says."""
 
-PEOPLE = frozenset(
+PEOPLE = _words(
     "person people victim victims survivor survivors casualty casualties patient patients human humans man woman child "
-    "men women children anyone anybody someone somebody everyone everybody".split()
+    "men women children anyone anybody someone somebody everyone everybody"
 )
 """Nouns that mean the label ``person``."""
 
-ANYBODY = frozenset("anyone anybody someone somebody everyone everybody people survivors victims casualties".split())
+ANYBODY = _words("anyone anybody someone somebody everyone everybody people survivors victims casualties")
 """Nouns that mean whoever is there, not a certain person."""
 
-ROOMS = frozenset("room rooms chamber chambers office offices".split())
+ROOMS = _words("room rooms chamber chambers office offices")
 
-PRONOUNS = frozenset("it them this that him her there".split())
+PRONOUNS = _words("it them this that him her there")
 
-DETERMINERS = frozenset("the a an this that these those my our his her their some any".split())
+DETERMINERS = _words("the a an this that these those my our his her their some any")
 
-EVERY = frozenset("every each all both".split())
+EVERY = _words("every each all both")
 
-VENUES = frozenset(
-    "warehouse building hall hangar house factory area zone place site depot scene store storehouse".split()
-)
+VENUES = _words("warehouse building hall hangar house factory area zone place site depot scene store storehouse")
 """Where it all happens: ``in the burning warehouse`` tells nothing apart."""
 
 IRREGULAR = {"shelves": "shelf", "boxes": "box", "crates": "crate", "people": "person", "men": "man", "women": "woman"}
@@ -83,9 +86,7 @@ AVOIDED: dict[str, RegionKind] = {
 }
 """What a person may ask to stay out of → kind of region."""
 
-NEVER_TOUCHED = frozenset(
-    "fire flames walls wall racks rack shelves obstacles people everything collisions anything".split()
-)
+NEVER_TOUCHED = _words("fire flames walls wall racks rack shelves obstacles people everything collisions anything")
 """What no plan flies into anyway, so that asking for it changes nothing."""
 
 CANNOT = {

@@ -8,25 +8,10 @@ from mintpilot.core.errors import InputError
 from mintpilot.core.geometry import Vec3
 from mintpilot.core.observation import Attribute
 from mintpilot.core.task import Reference
-from mintpilot.language import lexicon
+from mintpilot.language import lexicon, patterns
 
 DEFAULT_HEIGHT_M = 1.5
 """Height of a place that is given by two numbers only, metres."""
-
-_NUMBER = r"(-?\d+(?:\.\d+)?)"
-_UNIT = r"(?:\s*(?:m|metres?|meters?))?"
-_POSITION = re.compile(
-    rf"^(?:(?:the )?(?:point|position|place|coordinates?|waypoint) )?\(?\s*(?:x\s*=?\s*)?{_NUMBER}{_UNIT}\s*(?:,|\s|;)\s*"
-    rf"(?:y\s*=?\s*)?{_NUMBER}{_UNIT}(?:\s*(?:,|\s|;|at)\s*(?:z\s*=?\s*)?{_NUMBER}{_UNIT}(?: (?:high|up|altitude))?)?\s*\)?$"
-)
-_VENUE = re.compile(
-    rf"\s+(?:in|inside|within|of|around|throughout)\s+(?:the|this|that)\s+(?:\w+ ){{0,2}}(?:{'|'.join(sorted(lexicon.VENUES))})$"
-)
-_HERE = re.compile(r"\s+(?:in here|in there|over there|nearby|inside|around)$")
-_SIDE = re.compile(r"\s+(?:on|to|at) (?:the|your|our|its) (left|right)(?:[- ]hand)?(?: side)?$")
-_NEAR = re.compile(r"\s+(?:next to|near|beside|by|close to|under|underneath|in front of|behind|at|on|inside|in) (.+)$")
-_WITH = re.compile(r"\s+(?:with|containing|that has|that have|wearing) (?:the |a |an |some )?(.+)$")
-_STATE = re.compile(r"\s+(?:who|that|which) (?:is|are|was|were|may be|might be) (\w+)$")
 
 
 def parse_phrase(phrase: str, before: Reference | None = None) -> Reference:
@@ -48,12 +33,12 @@ def parse_phrase(phrase: str, before: Reference | None = None) -> Reference:
         raise InputError(f"'{words}' names a choice: say which one is meant, or describe both by what they share")
     if re.search(r"\band\b", words) and not re.search(r"\b(with|wearing|containing)\b.* and ", words):
         raise InputError(f"'{words}' names several things: give a step for each")
-    return _describe(_HERE.sub("", _VENUE.sub("", words)), before)
+    return _describe(patterns.HERE.sub("", patterns.VENUE.sub("", words)), before)
 
 
 def parse_position(words: str) -> Vec3 | None:
     """A place given by two or three numbers, metres; None for anything else."""
-    found = _POSITION.match(words)
+    found = patterns.POSITION.match(words)
     if found is None:
         return None
     x, y, z = found.groups()
@@ -94,7 +79,12 @@ def _describe(words: str, before: Reference | None) -> Reference:
 def _tail(words: str) -> tuple[str, tuple[Attribute, ...]]:
     """Takes what follows the noun off its phrase: ``on the left``, ``next to the rack``, ``with the medicine``."""
     found: list[Attribute] = []
-    for pattern, name in ((_STATE, "condition"), (_SIDE, "side"), (_WITH, "contents"), (_NEAR, "near")):
+    for pattern, name in (
+        (patterns.STATE, "condition"),
+        (patterns.SIDE, "side"),
+        (patterns.WITH, "contents"),
+        (patterns.NEAR, "near"),
+    ):
         match = pattern.search(words)
         if match is None:
             continue

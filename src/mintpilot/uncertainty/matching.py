@@ -63,11 +63,13 @@ EXTREMES: dict[str, Callable[[View, Thing], float]] = {
 def match(reference: Reference, things: Sequence[Thing], view: View) -> tuple[Thing, ...]:
     """The things that the reference may mean, in the order of ``things``.
 
-    The label itself counts first; only where nothing has it, its synonyms. Of an extreme (``the largest box``) those
+    Unnamed attributes may be part of the label (``fire extinguisher``). The label itself counts first; only where nothing has it, its synonyms. Of an extreme (``the largest box``) those
     within 5 % of the most are kept.
     """
-    found = _of_label(reference.label, things)
     plain = [a for a in reference.attributes if name_of(a) != EXTREME]
+    whole = " ".join((*(value_of(a) for a in plain if not name_of(a)), reference.label))
+    found = tuple(t for t in things if reference.label and _word(t.label) == _word(whole))
+    found = found or _of_label(reference.label, things)
     for attribute in plain:
         found = tuple(t for t in found if _has(t, attribute, things, view) is not False)
     for attribute in plain:
@@ -83,9 +85,12 @@ def match(reference: Reference, things: Sequence[Thing], view: View) -> tuple[Th
 def _of_label(label: str, things: Sequence[Thing]) -> tuple[Thing, ...]:
     if not label:
         return tuple(things)
-    word = label.lower().replace("_", " ").strip()
-    exact = tuple(t for t in things if t.label.lower().replace("_", " ") == word)
-    return exact or tuple(t for t in things if synonyms(t.label) & synonyms(word))
+    exact = tuple(t for t in things if _word(t.label) == _word(label))
+    return exact or tuple(t for t in things if synonyms(t.label) & synonyms(label))
+
+
+def _word(label: str) -> str:
+    return label.lower().replace("_", " ").strip()
 
 
 def _has(thing: Thing, attribute: Attribute, things: Sequence[Thing], view: View) -> bool | None:

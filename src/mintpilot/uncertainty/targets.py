@@ -17,6 +17,7 @@ from mintpilot.uncertainty.things import ROOM, Thing, middle_m, nearest_first, s
 
 _REACH_M = {Action.GO: 1.5, Action.PICK: 1.2, Action.DELIVER: 1.5, Action.LOOK: 1.5}
 _POSITION_REACH_M = 0.75
+PERSON = "person"
 _PRONOUNS = frozenset({"it", "him", "her", "them", "there", "that", "this", "one"})
 
 
@@ -50,18 +51,21 @@ class Binding:
             self.gaps[gap.id] = gap
 
     def all(self, stop_id: str, subgoal: SubGoal, reference: Reference) -> None:
-        """Binds a sub-goal that means every match: one stop for each, nearest first."""
-        found = self._found(reference)
+        """Binds a sub-goal that means every match: one stop for each, nearest first.
+
+        Nobody in sight is no problem for who looks for anybody.
+        """
+        found = self._found(reference, told=not (reference.every and reference.label == PERSON))
         left = [t for t in found if not t.searched and f"{stop_id}:{t.id}" not in self.finished]
         here_m = self.stops[-1].sites[0].position_m if self.stops else self.view.start_m
         for thing in nearest_first(left, here_m):
             self.stops.append(_stop(f"{stop_id}:{thing.id}", subgoal, (_site(thing, subgoal.action),)))
 
-    def _found(self, reference: Reference) -> tuple[Thing, ...]:
+    def _found(self, reference: Reference, *, told: bool = True) -> tuple[Thing, ...]:
         if reference.object_id:
             return tuple(t for t in self.things if t.id == reference.object_id) or self._none(reference)
         found = match(reference, self.things, self.view)
-        return tuple(t for t in found if not t.behind_door) or found or self._none(reference)
+        return tuple(t for t in found if not t.behind_door) or found or (self._none(reference) if told else ())
 
     def _none(self, reference: Reference) -> tuple[Thing, ...]:
         label = reference.label
@@ -97,7 +101,7 @@ def bind(task: Task, things: Sequence[Thing], view: View, *, finished: Collectio
 def _is_search(task: Task, subgoal: SubGoal) -> bool:
     """Who looks for everybody goes to each person in sight: which one was meant need not be asked."""
     fixed = _is_fixed(subgoal.reference)
-    return task.seeks_people and subgoal.action is Action.GO and not fixed and subgoal.reference.label == "person"
+    return task.seeks_people and subgoal.action is Action.GO and not fixed and subgoal.reference.label == PERSON
 
 
 def _is_fixed(reference: Reference) -> bool:
