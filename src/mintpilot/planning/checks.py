@@ -43,9 +43,13 @@ def check_path(path_m: Floats, map: SemanticMap, limits: VehicleLimits) -> str:
         return f"the path has shape {points.shape} instead of (n, 3) with n at least 1"
     if not np.isfinite(points).all():
         return f"way-point {int(np.argmin(np.isfinite(points).all(axis=1)))} is not a finite number"
-    visited = _visited(points, map)
+    spots = (points - np.asarray(map.frame.origin_m)) / map.frame.resolution_m
+    inside = ((spots >= -_TOUCH) & (spots <= np.asarray(map.frame.shape[::-1]) + _TOUCH)).all(axis=1)
+    if not inside.all():
+        return _sentence(spots[int(np.argmin(inside))], map, limits)
+    visited = _visited(spots)
     flyable = _is(known_flyable(map, limits), visited)
-    fine = flyable | _leaving(points, visited, flyable, map)
+    fine = flyable | _leaving(visited, flyable, map)
     if fine.all():
         return ""
     return _sentence(visited[int(np.argmin(fine))], map, limits)
@@ -65,9 +69,8 @@ def check_trajectory(trajectory: Trajectory, map: SemanticMap, limits: VehicleLi
     return check_path(position, map, limits)
 
 
-def _visited(points: Floats, map: SemanticMap) -> Floats:
-    """One point, in cells (m, 3) ``[x, y, z]``, in the middle of each passage through a cell, in order of the way."""
-    spots = (points - np.asarray(map.frame.origin_m)) / map.frame.resolution_m
+def _visited(spots: Floats) -> Floats:
+    """One spot (m, 3) in the middle of each passage through a cell, in order of the way; all in cells ``[x, y, z]``."""
     if len(spots) == 1:
         return spots
     a, d = spots[:-1], np.diff(spots, axis=0)
@@ -87,7 +90,8 @@ def _visited(points: Floats, map: SemanticMap) -> Floats:
     passage = (np.diff(piece) == 0) & long
     middle = (share[:-1] + share[1:])[passage] / 2
     inner = a[piece[:-1][passage]] + d[piece[:-1][passage]] * middle[:, None]
-    return np.concatenate([spots[:1], inner, spots[-1:]])
+    visited: Floats = np.concatenate([spots[:1], inner, spots[-1:]])
+    return visited
 
 
 def _is(flags: Bools, spots: Floats) -> Bools:
@@ -101,7 +105,7 @@ def _is(flags: Bools, spots: Floats) -> Bools:
     return found
 
 
-def _leaving(points: Floats, visited: Floats, flyable: Bools, map: SemanticMap) -> Bools:
+def _leaving(visited: Floats, flyable: Bools, map: SemanticMap) -> Bools:
     """Which of the visited spots belong to an allowed straight way from the start into flyable space."""
     none = np.zeros(len(visited), bool)
     distance = np.linalg.norm(visited - visited[0], axis=1) * map.frame.resolution_m
@@ -121,7 +125,8 @@ def _leaving(points: Floats, visited: Floats, flyable: Bools, map: SemanticMap) 
     for region in map.regions:
         if region.passable is not Knowledge.YES:
             free.ravel()[region.cells] = False
-    return way & _is(free, visited)
+    leaving: Bools = way & _is(free, visited)
+    return leaving
 
 
 def _sentence(spot: Floats, map: SemanticMap, limits: VehicleLimits) -> str:

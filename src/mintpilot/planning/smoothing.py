@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numba
 import numpy as np
 
@@ -63,7 +65,7 @@ def heading(
 
 def _densified(points_m: Floats, spacing_m: float) -> Floats:
     parts = [points_m[:1]]
-    for a, b in zip(points_m[:-1], points_m[1:], strict=True):
+    for a, b in pairwise(points_m):
         count = max(1, int(np.ceil(np.linalg.norm(b - a) / spacing_m)))
         parts.append(a + (b - a) * (np.arange(1, count + 1) / count)[:, None])
     return np.concatenate(parts)

@@ -33,8 +33,8 @@ def plan_trajectory(
     """A smooth motion along the path, at rest at both ends, through known flyable cells only.
 
     Lines of sight cut needless corners off the path; what is left is flown with rounded corners, each as fast as its
-    surroundings allow, at worst stopping in it. Speed and acceleration are hard limits (`mintpilot.planning.motion`), the
-    heading follows the motion at up to `YAW_RATE_RAD_S`. Equal inputs give equal trajectories.
+    surroundings allow, at worst stopping in it. Speed and acceleration are hard limits (see `motion`), the heading
+    follows the motion at up to `YAW_RATE_RAD_S`. Equal inputs give equal trajectories.
 
     The duration is about the path's length over the speed, plus ``speed / acceleration`` and a quarter of a second for
     getting under way and coming to rest, plus the turn to ``end_yaw_rad`` where the flight is too short for it. Corners
@@ -72,7 +72,7 @@ def plan_trajectory(
         still = np.zeros((1 + int(np.ceil(0.2 / sample_s)), 3))
         return _assembled(corners[-1] + still, still, still, yaw_ends, sample_s)
     motion = _clear_motion(corners, stops, Sight(allowed, map.frame), speed, limits.max_acceleration_mps2, sample_s)
-    time = sample_s * np.arange(int(np.ceil(motion.duration_s / sample_s - 1e-9)) + 1)
+    time = _times(motion, sample_s)
     position, velocity, acceleration = motion.sample(time)
     position += corners[0]
     position[-1] = corners[-1]
@@ -118,14 +118,14 @@ def _corners(path: Floats, map: SemanticMap, allowed: Bools) -> tuple[Floats, Bo
 def _clear_motion(
     corners: Floats, stops: Bools, sight: Sight, speed: float, acceleration: float, sample_s: float
 ) -> Motion:
-    """Lowers the speed at corners whose turn leaves the allowed cells, until none does; stopping everywhere never does."""
+    """Lowers the speed at corners whose turn leaves the allowed cells, until none does: a stop never does."""
     corner_mps = np.where(stops, 0.0, speed)
     fine = sample_s / int(np.ceil(sample_s / _CHECK_S))
     while True:
         motion = corner_motion(corners, corner_mps, peak_mps=speed, acceleration_mps2=acceleration)
         bad = _blocked_times(motion, corners[0], sight, fine)
         if fine < sample_s:
-            bad = np.concatenate([bad, _blocked_times(motion, corners[0], sight, sample_s)])
+            bad = np.append(bad, _blocked_times(motion, corners[0], sight, sample_s))
         live = np.flatnonzero(corner_mps > 0)
         if not len(bad):
             return motion
@@ -136,8 +136,12 @@ def _clear_motion(
         corner_mps[corner_mps < _SLOWEST_MPS] = 0.0
 
 
+def _times(motion: Motion, step_s: float) -> Floats:
+    return np.asarray(step_s * np.arange(int(np.ceil(motion.duration_s / step_s - 1e-9)) + 1), float)
+
+
 def _blocked_times(motion: Motion, start: Floats, sight: Sight, step_s: float) -> Floats:
-    time = step_s * np.arange(int(np.ceil(motion.duration_s / step_s - 1e-9)) + 1)
+    time = _times(motion, step_s)
     blocked = sight.blocked_pieces(start + motion.sample(time)[0])
     return np.asarray(time[:-1][blocked] + step_s / 2)
 
@@ -148,7 +152,7 @@ def _assembled(
     yaw = heading(velocity, start_rad=yaw_ends[0], end_rad=yaw_ends[1], step_s=sample_s, rate_rad_s=YAW_RATE_RAD_S)
     wait = len(yaw) - len(position)  # hovering until the turn is done
     return Trajectory(
-        time_s=sample_s * np.arange(len(yaw)),
+        time_s=np.asarray(sample_s * np.arange(len(yaw)), float),
         position_m=np.concatenate([position, np.repeat(position[-1:], wait, axis=0)]),
         velocity_mps=np.concatenate([velocity, np.zeros((wait, 3))]),
         acceleration_mps2=np.concatenate([acceleration, np.zeros((wait, 3))]),

@@ -17,17 +17,17 @@ GRAVITY_MPS2 = 9.81
 class Gains:
     """Gains per unit of mass or inertia: the closed loop does not change with the airframe."""
 
-    position: float = 7.0
+    position: float = 16.0
     """1/s²."""
-    velocity: float = 4.2
+    velocity: float = 6.5
     """1/s."""
-    integral: float = 3.0
+    integral: float = 10.0
     """1/s³; takes out steady wind and wrong mass."""
     integral_limit_mps2: float = 1.5
     """Most that the integral term may command."""
-    attitude: tuple[float, float, float] = (180.0, 180.0, 60.0)
+    attitude: tuple[float, float, float] = (250.0, 250.0, 60.0)
     """1/s², about x, y, z."""
-    rate: tuple[float, float, float] = (18.0, 18.0, 9.0)
+    rate: tuple[float, float, float] = (22.0, 22.0, 9.0)
     """1/s, about x, y, z."""
 
 

@@ -109,9 +109,10 @@ class SceneJudge(Judge):
             return
         if stop.action is Action.DELIVER:
             self._carried = ""
-        if target is not None and self._goals_left and target.id == self._goals_left[0]:
-            if box_distance(target.extent_m, position_m) <= self._rules.pick_reach_m:
-                self._goals_left.pop(0)
+        if target is None or not self._goals_left or target.id != self._goals_left[0]:
+            return
+        if box_distance(target.extent_m, position_m) <= self._rules.pick_reach_m:
+            self._goals_left.pop(0)
 
     def verdict(self) -> Verdict | None:
         """The failure that has happened, if any."""

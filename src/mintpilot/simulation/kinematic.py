@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from mintpilot.core.geometry import Floats, Vec3
+from mintpilot.core.geometry import Floats
 from mintpilot.core.mission import Verdict
 from mintpilot.core.plan import Stop
 from mintpilot.core.ports import Judge, Vehicle, Watch
 from mintpilot.core.trajectory import FlightEnd, FlightLog, Trajectory, VehicleState
 from mintpilot.simulation.judge import SceneJudge, collision
 from mintpilot.simulation.obstacles import Obstacles
-from mintpilot.simulation.reference import Reference, braked, check_start, sampled
+from mintpilot.simulation.reference import Reference, as_vec3, braked, check_start, hover, sampled, time_steps
 from mintpilot.simulation.scene import FlightRules, Scene
 
 STEP_S = 0.02
@@ -48,8 +48,8 @@ class KinematicSimulator(Vehicle, Judge):
         """Where it is, exactly."""
         return VehicleState(
             time_s=self._time_s,
-            position_m=_vec3(self._position),
-            velocity_mps=_vec3(self._velocity),
+            position_m=as_vec3(self._position),
+            velocity_mps=as_vec3(self._velocity),
             yaw_rad=self._yaw,
             endurance_left_s=self._judge.endurance_left_s(self._time_s),
         )
@@ -61,11 +61,10 @@ class KinematicSimulator(Vehicle, Judge):
             InputError: the trajectory is empty, malformed or not finite.
             DeviceError: it does not begin where the vehicle is.
         """
-        check_start(trajectory, _vec3(self._position))
+        check_start(trajectory, as_vec3(self._position))
         if self._judge.verdict() is not None:
             return self._grounded()
-        steps = max(int(np.ceil(trajectory.duration_s / STEP_S - 1e-9)), 1)
-        way = sampled(trajectory, np.minimum(STEP_S * np.arange(steps + 1), trajectory.duration_s))
+        way = sampled(trajectory, time_steps(trajectory.duration_s, STEP_S))
         failure = self._first_failure(way)
         end = FlightEnd.ARRIVED
         stopped = self._watched(way, failure, watch)
@@ -81,7 +80,7 @@ class KinematicSimulator(Vehicle, Judge):
         self._place(way, last)
         if end is not FlightEnd.FAILED:
             self._velocity = np.zeros(3)
-            self._judge.hovered(_vec3(self._position))
+            self._judge.hovered(as_vec3(self._position))
         positions = way.position_m[: last + 1]
         reason = failure[1].reason if failure is not None else ""
         return FlightLog(
@@ -92,21 +91,13 @@ class KinematicSimulator(Vehicle, Judge):
         """Does what the stop is for; the time spent counts."""
         if self._judge.verdict() is not None:
             return
-        times = np.append(np.arange(0.0, dwell_s, 0.1), dwell_s)
-        still = np.zeros((len(times), 3))
-        here = Reference(
-            time_s=times,
-            position_m=self._position + still,
-            velocity_mps=still,
-            acceleration_mps2=still,
-            yaw_rad=np.full(len(times), self._yaw),
-        )
+        here = hover(self._position, self._yaw, time_steps(dwell_s, 0.1))
         failure = self._first_failure(here)
-        self._place(here, failure[0] if failure is not None else len(times) - 1)
+        self._place(here, failure[0] if failure is not None else len(here.time_s) - 1)
         if failure is not None:
             self._judge.fail(failure[1])
         else:
-            self._judge.acted(stop, _vec3(self._position))
+            self._judge.acted(stop, as_vec3(self._position))
 
     def hold(self) -> None:
         """Stays where it is."""
@@ -171,7 +162,3 @@ def _joined(way: Reference, at: int, rest: Reference) -> Reference:
         acceleration_mps2=np.concatenate([way.acceleration_mps2[:at], rest.acceleration_mps2]),
         yaw_rad=np.concatenate([way.yaw_rad[:at], rest.yaw_rad]),
     )
-
-
-def _vec3(row: Floats) -> Vec3:
-    return (float(row[0]), float(row[1]), float(row[2]))

@@ -54,8 +54,8 @@ class Airframe:
 def add_quadrotor(spec: Any, start_m: Vec3, *, radius_m: float, airframe: Airframe | None = None) -> None:
     """Adds the drone, hovering level at ``start_m``, to a ``mujoco.MjSpec``.
 
-    Body ``drone`` with free joint ``drone``; actuators ``rotor:0`` to ``rotor:3`` (thrust in newtons, with lag); cameras
-    ``rgbd`` (forward and slightly down) and ``chase`` (from behind). The hull ``drone:hull``, a cylinder of
+    Body ``drone`` with free joint ``drone``; actuators ``rotor:0`` to ``rotor:3`` (thrust in newtons, with lag);
+    cameras ``rgbd`` (forward and slightly down) and ``chase`` (from behind). The hull ``drone:hull``, a cylinder of
     ``radius_m``, is all of it that collides, and is not drawn.
     """
     mujoco = load_mujoco()

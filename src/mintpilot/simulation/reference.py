@@ -67,6 +67,24 @@ def check_start(trajectory: Trajectory, position_m: Vec3) -> None:
         )
 
 
+def time_steps(duration_s: float, step_s: float) -> Floats:
+    """Times (n,) from 0 to exactly ``duration_s``, a step apart but for the last; at least two."""
+    steps = max(int(np.ceil(duration_s / step_s - 1e-9)), 1)
+    return np.minimum(step_s * np.arange(steps + 1, dtype=float), duration_s)
+
+
+def hover(position_m: Floats, yaw_rad: float, time_s: Floats) -> Reference:
+    """Staying in one place (3,) at these times (n,)."""
+    still = np.zeros((len(time_s), 3))
+    return Reference(
+        time_s=time_s,
+        position_m=position_m + still,
+        velocity_mps=still,
+        acceleration_mps2=still,
+        yaw_rad=np.full(len(time_s), yaw_rad),
+    )
+
+
 def sampled(trajectory: Trajectory, time_s: Floats) -> Reference:
     """The trajectory at these times (n,) after its first sample; it hovers before and after."""
     at = np.asarray(time_s, float) + trajectory.time_s[0]
@@ -86,7 +104,7 @@ def braked(trajectory: Trajectory, from_s: float, step_s: float) -> Reference:
     """
     speed = float(np.linalg.norm(sampled(trajectory, np.array([from_s])).velocity_mps))
     halt_s = max(speed / BRAKING_MPS2, step_s)
-    elapsed = step_s * np.arange(int(np.ceil(halt_s / step_s)) + 1)
+    elapsed = np.asarray(step_s * np.arange(int(np.ceil(halt_s / step_s)) + 1), float)
     rate = np.clip(1 - elapsed / halt_s, 0.0, 1.0)
     slowed = np.minimum(elapsed, halt_s)
     along = sampled(trajectory, from_s + slowed - slowed**2 / (2 * halt_s))
@@ -98,6 +116,11 @@ def braked(trajectory: Trajectory, from_s: float, step_s: float) -> Reference:
         acceleration_mps2=along.acceleration_mps2 * rate[:, None] ** 2 - along.velocity_mps * braking,
         yaw_rad=along.yaw_rad,
     )
+
+
+def as_vec3(row: Floats) -> Vec3:
+    """The three numbers of a row (3,)."""
+    return (float(row[0]), float(row[1]), float(row[2]))
 
 
 def _between(at: Floats, time_s: Floats, rows: Floats) -> Floats:
