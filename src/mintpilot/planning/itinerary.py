@@ -9,7 +9,7 @@ import numpy as np
 
 from mintpilot.core.errors import InfeasibleError, MissionError
 from mintpilot.core.gap import PRESENT, GapKind
-from mintpilot.core.geometry import Floats
+from mintpilot.core.geometry import Floats, Ints
 from mintpilot.core.plan import Leg, Plan, PlanningProblem, Site, Stop
 from mintpilot.planning.approach import approach_cell
 from mintpilot.planning.legs import Cell3
@@ -64,7 +64,7 @@ class Itinerary:
         """A route as a plan in metres and seconds, which relies on nothing yet."""
         stops = (*self.ordered, *visits)
         cruise = self.problem.limits.cruise_mps
-        legs = []
+        legs: list[Leg] = []
         for number, way in zip(route.order, route.ways, strict=True):
             stop = stops[number]
             site = self.site(stop, values)
@@ -124,7 +124,7 @@ def needed_value(stop: Stop) -> str:
     return stop.sites[0].value or PRESENT
 
 
-def _cell(cell: Sequence[int] | np.ndarray | None) -> Cell3 | None:
+def _cell(cell: Sequence[int] | Ints | None) -> Cell3 | None:
     if cell is None:
         return None
     z, y, x = (int(i) for i in cell)

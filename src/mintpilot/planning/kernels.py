@@ -7,10 +7,11 @@ of queue entries grows when it is full. Kernels are compiled once and cached on 
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Callable
+from typing import Any, cast
 
 import numpy as np
-from llvmlite import ir
+from llvmlite import ir  # type: ignore[import-untyped]
 from numba import njit
 from numba.extending import intrinsic
 from numpy.typing import NDArray
@@ -30,14 +31,15 @@ SLACK = 1e-9
 CLOSED = 64
 
 
-@intrinsic
-def lowest_bit(typingctx: Any, word: Any) -> Any:  # noqa: ARG001
-    """Index of the lowest bit that is set (the word must not be 0)."""
-
+def _lowest_bit(typingctx: Any, word: Any) -> Any:  # noqa: ARG001
     def codegen(context: Any, builder: Any, signature: Any, args: Any) -> Any:  # noqa: ARG001
         return builder.cttz(args[0], ir.Constant(ir.IntType(1), 1))
 
     return word(word), codegen
+
+
+lowest_bit: Callable[[np.uint32], int] = cast(Any, intrinsic)(_lowest_bit)
+"""Index of the lowest bit that is set (the word must not be 0)."""
 
 
 @njit(cache=True)
@@ -80,7 +82,7 @@ def astar(
     """
     full = natural[NO_MOVE]
     gx, gy, gz = goal % nx, goal // nx % ny, goal // (nx * ny)
-    if guide is None:
+    if guide is None:  # noqa: SIM108 - numba prunes the branch, not the expression
         f0 = octile(start % nx - gx, start // nx % ny - gy, start // (nx * ny) - gz)
     else:
         f0 = guide[start]
@@ -124,7 +126,7 @@ def astar(
             cost = g + length[k]
             if cells[to].tag == tag and cost >= cells[to].g - 1e-12:
                 continue
-            if guide is None:
+            if guide is None:  # noqa: SIM108
                 f = cost + octile(x + step[k, 2], y + step[k, 1], z + step[k, 0])
             else:
                 f = cost + guide[to]

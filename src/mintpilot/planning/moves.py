@@ -1,19 +1,20 @@
 """The moves of a grid, and which of them can be left out where nothing is near.
 
-**Canonical moves.** In a neighbourhood that is wholly free, a path that makes a short step and then a wider diagonal one
-can be replaced by the same two moves in the other order, and any other change of direction by a strictly shorter path,
-both inside the neighbourhood. So a node that was reached by move p needs only the moves *nested* in p: p itself and the
-moves along some of its axes (7 of 26 after a space diagonal, 3 after a plane one, 1 after a straight one).
+**Canonical moves.** In a neighbourhood that is wholly free, a path that makes a short step and then a wider diagonal
+one can be replaced by the same two moves in the other order, and any other change of direction by a strictly shorter
+path, both inside the neighbourhood. So a node that was reached by move p needs only the moves *nested* in p: p itself
+and the moves along some of its axes (7 of 26 after a space diagonal, 3 after a plane one, 1 after a straight one).
 
-Why nothing is lost: let w be a node of least distance that is missed. Each best predecessor v of w was expanded and left
-w out, so v's neighbourhood is free and a path as short reaches w through another best predecessor, with a last move of
-fewer axes. That cannot go on for ever, so some predecessor did generate w. The same holds for labels (cost, regions
-entered) if no region touches the neighbourhood: both ways enter the same regions.
+Why nothing is lost: let w be a node of least distance that is missed. Each best predecessor v of w was expanded and
+left w out, so v's neighbourhood is free and a path as short reaches w through another best predecessor, with a last
+move of fewer axes. That cannot go on for ever, so some predecessor did generate w. The same holds for labels (cost,
+regions entered) if no region touches the neighbourhood: both ways enter the same regions.
 """
 
 from __future__ import annotations
 
 import itertools
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -44,13 +45,17 @@ def _moves(layers: tuple[int, ...]) -> Moves:
     steps = [s for s in around if any(s)]
     natural = np.full(32, (1 << len(steps)) - 1, np.uint32)
     for k, step in enumerate(steps):
-        natural[k] = sum(1 << j for j, other in enumerate(steps) if _nested(other, step))
+        natural[k] = _bits(j for j, other in enumerate(steps) if _nested(other, step))
     return Moves(
         step=np.array(steps, np.int32),
         length=np.sqrt(np.abs(np.array(steps, float)).sum(axis=1)),
-        needs=np.array([sum(1 << around.index(c) for c in _block(s)) for s in steps], np.uint32),
+        needs=np.array([_bits(i for i, c in enumerate(around) if c in _block(s)) for s in steps], np.uint32),
         natural=natural,
     )
+
+
+def _bits(numbers: Iterable[int]) -> int:
+    return sum(1 << number for number in numbers)
 
 
 def _nested(inner: tuple[int, ...], outer: tuple[int, ...]) -> bool:

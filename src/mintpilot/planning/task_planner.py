@@ -18,8 +18,8 @@ from mintpilot.planning.plan_space import GridPlanSpace
 from mintpilot.planning.terrain import terrain_of
 
 FindPath: TypeAlias = Callable[[Bools, tuple[int, int, int], tuple[int, int, int]], tuple[float, Ints] | None]
-"""A path finder of which nothing else is known: (free cells (nz, ny, nx), start cell, goal cell) to (cost in edges, cells
-(n, 3)), or None where there is no path. It must be exact, and its paths must stay in free cells."""
+"""A path finder of which nothing else is known: (free cells (nz, ny, nx), start cell, goal cell) to (cost in edges,
+cells (n, 3)), or None where there is no path. It must be exact, and its paths must stay in free cells."""
 
 
 class GridPlanner(Planner):

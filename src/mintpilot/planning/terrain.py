@@ -88,7 +88,7 @@ def start_cell(frame: GridFrame, free: Bools, matter: Bools, start_m: Vec3) -> I
     Raises:
         InfeasibleError: there is none within `SNAP_M`, straight through free cells.
     """
-    own = _cells_of(frame, np.array([start_m]))[0]
+    own: Ints = _cells_of(frame, np.array([start_m]))[0]
     if frame.contains(own)[0] and free[tuple(own)]:
         return own
     reach = int(np.ceil(SNAP_M / frame.resolution_m)) + 1
@@ -134,7 +134,8 @@ def rays(frame: GridFrame, cells: Ints, position_m: Vec3) -> Ints:
     longest = float(np.linalg.norm(centres - target, axis=1).max(initial=0.0))
     steps = np.linspace(0.0, 1.0, max(2, int(np.ceil(4 * longest / frame.resolution_m)) + 1))
     points = centres[:, None, :] + (target - centres)[:, None, :] * steps[None, :, None]
-    return _cells_of(frame, points.reshape(-1, 3)).reshape(len(cells), len(steps), 3)
+    found: Ints = _cells_of(frame, points.reshape(-1, 3)).reshape(len(cells), len(steps), 3)
+    return found
 
 
 def _cells_of(frame: GridFrame, points_m: Floats) -> Ints:
