@@ -162,8 +162,8 @@ def _add_cameras(spec: Any, volume: Box) -> None:
         fovy=72,
         xyaxes=_looking((x1 - x0, y1 - y0, -0.55 * (y1 - y0))),
     )
-    height = 1.04 * max((y1 - y0), (x1 - x0) * 0.75)
-    spec.worldbody.add_camera(name="plan", pos=[cx, cy, z1 + height], fovy=48, xyaxes=[1, 0, 0, 0, 1, 0])
+    height = 2.5 * max(y1 - y0, 0.58 * (x1 - x0))
+    spec.worldbody.add_camera(name="plan", pos=[cx, cy, z1 + height], fovy=24, xyaxes=[1, 0, 0, 0, 1, 0])
 
 
 def _looking(direction: Vec3) -> list[float]:

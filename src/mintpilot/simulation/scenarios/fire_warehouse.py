@@ -58,9 +58,9 @@ class FireWarehouseParameters:
     """Probability that it fills a gate or hall of another way. What is left: somewhere off every way."""
     link: float = 0.5
     """Probability that the two halls are joined by a gate of their own: four ways instead of two."""
-    endurance_least: float = 1.3
+    endurance_least: float = 1.2
     """The battery lasts for at least this multiple of the shortest mission's time (smoke harmless, room empty)."""
-    endurance_most: float = 2.6
+    endurance_most: float = 2.2
     """… and for at most this one. Drawn evenly in between, independently of the truths."""
     reserve: float = 0.25
     """Share of the battery that plans leave for braking, corners and gusts: costs are lengths at cruise speed."""
@@ -106,10 +106,10 @@ def fire_warehouse(seed: int, **parameters: float) -> Scenario:
     plan = draw_plan(layout, gate_m=p.gate_m, link_probability=p.link)
     places = tuple(ROOM_PLACES[i] for i in layout.permutation(len(ROOM_PLACES))[: int(p.rooms)])
     rooms = tuple(_room(plan, place, i, p, truth) for i, place in enumerate(places))
-    start = (float(layout.uniform(1.0, 2.0)), float(layout.uniform(5.0, 10.0)))
     floor = Floor(taken=[*plan.partitions(), *(r.extent_m for r in rooms)])
+    start = _free_place(floor, layout, (1.0, 2.0))
     floor.keep_clear([(r.viewpoint_m[0], r.viewpoint_m[1]) for r in rooms], 1.5)
-    goal = _person_place(floor, layout)
+    goal = _free_place(floor, layout, (17.0, 18.4))
     ways = plan.ways(start, goal)
     _keep_open(floor, plan, ways, start, goal)
     racks = add_racks(floor, plan, places, layout)
@@ -170,15 +170,15 @@ def _room(plan: HallPlan, place: str, index: int, p: FireWarehouseParameters, tr
     )
 
 
-def _person_place(floor: Floor, rng: np.random.Generator) -> tuple[float, float]:
-    """In the open in the east, a body's length away from walls and doors."""
+def _free_place(floor: Floor, rng: np.random.Generator, x_m: tuple[float, float]) -> tuple[float, float]:
+    """A place in the open between two x, anywhere from south to north, a body's length away from walls and doors."""
 
     def draw(rng: np.random.Generator) -> Box:
-        return standing((float(rng.uniform(17.0, 18.4)), float(rng.uniform(1.6, 13.4))), (0.2, 0.2, 0.3), VOLUME)
+        return standing((float(rng.uniform(*x_m)), float(rng.uniform(1.5, 13.5))), (0.2, 0.2, 0.3), VOLUME)
 
-    place = Floor(taken=[*floor.taken], clear=[*floor.clear]).place(rng, draw, spacing_m=1.4)
+    place = Floor(taken=[*floor.taken], clear=[*floor.clear]).place(rng, draw, spacing_m=1.3)
     if place is None:
-        raise MissionError("no place is left for the injured person: ask for fewer rooms")
+        raise MissionError("no place is left for the drone or the injured person: ask for fewer rooms")
     return (place.centre_m[0], place.centre_m[1])
 
 

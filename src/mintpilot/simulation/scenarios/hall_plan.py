@@ -115,7 +115,7 @@ def draw_plan(rng: np.random.Generator, *, gate_m: float, link_probability: floa
     y_m = snap(rng.uniform(6.8, 7.8))
     gates = []
     for wall, x in (("a", x_a), ("b", x_b)):
-        south, north = snap(rng.uniform(2.4, y_m - 2.2)), snap(rng.uniform(y_m + 2.4, 12.6))
+        south, north = snap(rng.uniform(1.8, 4.8)), snap(rng.uniform(10.2, 13.2))
         gates += [(f"{wall}-south", x + WALL_M / 2, south), (f"{wall}-north", x + WALL_M / 2, north)]
     has_link = bool(rng.random() < link_probability)
     link = snap(rng.uniform(x_a + 2.4, x_b - 2.2))
