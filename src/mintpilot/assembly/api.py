@@ -16,7 +16,7 @@ from mintpilot.core.ports import Ask, Operator, Recorder
 from mintpilot.elicitation.wording import word_question
 from mintpilot.interaction.scripted import ScriptedOperator
 from mintpilot.mission.account import first_accounts
-from mintpilot.mission.loop import RESERVE, fly_mission
+from mintpilot.mission.loop import fly_mission
 from mintpilot.mission.mind import Mind
 from mintpilot.mission.preview import preview
 from mintpilot.mission.reader import Problem, find_problems, read_mission
@@ -60,7 +60,7 @@ def plan_mission(
         Mind(map=world.map, belief=prior_belief(())),
         parts,
         start_m=world.mission.start_m,
-        endurance_s=world.mission.limits.endurance_s * (1 - RESERVE),
+        endurance_s=world.mission.limits.endurance_s,
     )
     seconds = time.perf_counter() - begun
     decision = seen.first.decision
@@ -72,7 +72,7 @@ def plan_mission(
         seen,
         mission=file.name,
         strategy=strategy,
-        accounts=first_accounts(seen.first, world.mission.asking, parts.metric),
+        accounts=first_accounts(seen.first),
         question=question,
         seconds=seconds,
     )

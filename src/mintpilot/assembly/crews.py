@@ -23,7 +23,7 @@ from mintpilot.mission.schema import OperatorSpec
 from mintpilot.mission.survey import survey
 from mintpilot.simulation.kinematic import KinematicSimulator
 from mintpilot.simulation.mujoco_vehicle import MujocoSimulator
-from mintpilot.simulation.scene_map import SceneEyes
+from mintpilot.simulation.scene_eyes import SceneEyes
 
 
 class VehicleChoice(StrEnum):
@@ -76,9 +76,7 @@ def scripted_operator(world: World, spec: OperatorSpec) -> ScriptedOperator:
     )
 
 
-def crew_for(
-    world: World, choices: Choices, *, operator: Operator, recorder: Recorder
-) -> AbstractContextManager[Crew]:
+def crew_for(world: World, choices: Choices, *, operator: Operator, recorder: Recorder) -> AbstractContextManager[Crew]:
     """A crew, as a context that closes the simulator in the end.
 
     Raises:
@@ -96,16 +94,14 @@ class _CrewContext(AbstractContextManager[Crew]):
         world, choices = self._world, self._choices
         parts = thinking_parts(world, choices)
         if choices.vehicle is VehicleChoice.MUJOCO and not world.is_map:
-            simulator = MujocoSimulator(
-                world.scene, world.rules, seed=world.seed, camera_size=choices.camera_size
-            )
+            simulator = MujocoSimulator(world.scene, world.rules, seed=world.seed, camera_size=choices.camera_size)
             self._stack.callback(simulator.close)
             perception: Perception = load("perception", choices.perception)()
             builder = map_builder(world)
             eyes = CameraEyes(camera=simulator, perception=perception, builder=builder, recorder=self._recorder)
             return self._crew(parts, simulator, eyes, self._surveyed(simulator, eyes), watch_map=True)
         kinematic = KinematicSimulator(world.scene, world.rules, seed=world.seed)
-        seen: Eyes = FixedEyes(world.map) if world.is_map else SceneEyes(world.scene, world.map, kinematic.state)
+        seen: Eyes = FixedEyes(world.map) if world.is_map else SceneEyes(world.scene, kinematic.state)
         changes = any(solid.appears_s > 0 for solid in world.scene.solids)
 
         def given() -> SemanticMap:

@@ -18,12 +18,32 @@ BUILT_IN: Final = MappingProxyType(
         "strategy": MappingProxyType(
             {
                 "mint": "mintpilot.strategies.mint:MintStrategy",
+                "exhaustive": "mintpilot.strategies.exhaustive:ExhaustiveStrategy",
+                "gap-by-gap": "mintpilot.strategies.gap_by_gap:GapByGapStrategy",
+                "random": "mintpilot.strategies.random_query:RandomQueryStrategy",
+                "passive-conservative": "mintpilot.strategies.passive:ConservativeStrategy",
+                "passive-risky": "mintpilot.strategies.passive:RiskyStrategy",
+                "pure-llm": "mintpilot.strategies.passive:PureLlmStrategy",
             }
         ),
-        "objective": MappingProxyType({}),
-        "metric": MappingProxyType({}),
-        "planner": MappingProxyType({}),
-        "perception": MappingProxyType({}),
+        "objective": MappingProxyType(
+            {
+                "information-gain": "mintpilot.elicitation.objectives.information_gain:InformationGain",
+                "ec2": "mintpilot.elicitation.objectives.ec2:Ec2",
+                "value-of-information": "mintpilot.elicitation.objectives.value_of_information:ValueOfInformation",
+                "optimal": "mintpilot.elicitation.objectives.optimal:Optimal",
+                "random": "mintpilot.elicitation.objectives.random:Random",
+            }
+        ),
+        "metric": MappingProxyType(
+            {
+                "frechet": "mintpilot.reasoning.metrics:FrechetMetric",
+                "hausdorff": "mintpilot.reasoning.metrics:HausdorffMetric",
+                "path-variance": "mintpilot.reasoning.metrics:PathVarianceMetric",
+            }
+        ),
+        "planner": MappingProxyType({"grid": "mintpilot.planning.task_planner:GridPlanner"}),
+        "perception": MappingProxyType({"geometric": "mintpilot.perception.geometric:GeometricPerception"}),
     }
 )
 """Port → name → where it is. Every entry is called without arguments to make a part."""

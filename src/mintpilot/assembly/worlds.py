@@ -6,8 +6,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from mintpilot.core.errors import MissionError
 from mintpilot.core.gap import CorrelationGroup, GapKind, KnowledgeGap
 from mintpilot.core.mission import Mission
+from mintpilot.core.plan import VehicleLimits
 from mintpilot.core.ports import TruthOracle
 from mintpilot.core.semantic_map import SemanticMap
 from mintpilot.core.task import Task
@@ -23,6 +25,9 @@ from mintpilot.simulation.scenarios import make_scenario
 from mintpilot.simulation.scene import ClosedRoom, FlightRules, Person, Scene, Shape, Smoke, Solid
 from mintpilot.simulation.scene_map import map_of_scene
 from mintpilot.simulation.truth import SceneTruth
+
+RESERVE = 0.2
+"""Share of a battery that plans leave."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -83,11 +88,15 @@ def build_world(file: MissionFile, *, base: Path, seed: int | None) -> World:
 
 
 def _from_scenario(file: MissionFile, world: ScenarioWorld, seed: int) -> World:
-    scenario = make_scenario(world.scenario, seed, world.parameters)
+    scenario = make_scenario(world.scenario, seed, **_numbers(world.parameters))
     given = file.model_fields_set
-    limits = limits_of(file) if "vehicle" in given else scenario.mission.limits
-    if file.vehicle.endurance_s is None:
-        limits = replace(limits, endurance_s=scenario.mission.limits.endurance_s)
+    limits, rules = scenario.mission.limits, scenario.rules
+    if "vehicle" in given:
+        limits = limits_of(file)
+        if file.vehicle.endurance_s is None:
+            limits = replace(limits, endurance_s=scenario.mission.limits.endurance_s)
+        else:
+            limits, rules = _with_reserve(limits), replace(rules, endurance_s=limits.endurance_s)
     mission = replace(
         scenario.mission,
         name=file.name,
@@ -98,13 +107,13 @@ def _from_scenario(file: MissionFile, world: ScenarioWorld, seed: int) -> World:
     if file.survey is not None:
         surveyed = mission_of(file, start_m=mission.start_m, volume=mission.volume)
         mission = replace(mission, survey=surveyed.survey, resolution_m=surveyed.resolution_m)
-    rules = replace(scenario.rules, endurance_s=limits.endurance_s)
     return _assembled(file, mission, scenario.scene, rules, seed)
 
 
 def _from_scene(file: MissionFile, scene: Scene, seed: int) -> World:
     mission = mission_of(file, start_m=scene.start_m, volume=scene.volume)
-    return _assembled(file, mission, scene, FlightRules(endurance_s=mission.limits.endurance_s), seed)
+    rules = FlightRules(endurance_s=mission.limits.endurance_s)
+    return _assembled(file, replace(mission, limits=_with_reserve(mission.limits)), scene, rules, seed)
 
 
 def _assembled(file: MissionFile, mission: Mission, scene: Scene, rules: FlightRules, seed: int) -> World:
@@ -127,17 +136,31 @@ def _from_map(file: MissionFile, world: MapWorld, base: Path, seed: int) -> Worl
     truths = truths_of(file)
     mission = mission_of(file, start_m=start, volume=map_.frame.box)
     scene = scene_of_map(map_, name=file.name, start_m=start, truths=truths)
+    rules = FlightRules(radius_m=min(0.27, mission.limits.radius_m), endurance_s=mission.limits.endurance_s)
     return World(
-        mission=mission,
+        mission=replace(mission, limits=_with_reserve(mission.limits)),
         task=task_of(file, layer_m=world.height_m) or parse_instruction(mission.instruction),
         scene=scene,
-        rules=FlightRules(radius_m=min(0.27, mission.limits.radius_m), endurance_s=mission.limits.endurance_s),
+        rules=rules,
         truth=DeclaredTruth(truths),
         map=map_,
         is_map=True,
         seed=seed,
         groups=correlations_of(file),
     )
+
+
+def _with_reserve(limits: VehicleLimits) -> VehicleLimits:
+    """Plans may use the battery less a reserve, for braking, corners and gusts: costs are lengths at cruise speed."""
+    return replace(limits, endurance_s=limits.endurance_s * (1 - RESERVE))
+
+
+def _numbers(parameters: Mapping[str, bool | int | float | str]) -> dict[str, float]:
+    """Generators take numbers only."""
+    for name, value in parameters.items():
+        if isinstance(value, str):
+            raise MissionError(f"scenario parameter {name} = '{value}': must be a number; write it without quotes")
+    return {name: float(value) for name, value in parameters.items()}
 
 
 def scene_of(spec: SceneSpec, name: str) -> Scene:
@@ -182,4 +205,3 @@ def _room_of(spec: ClosedRoomSpec) -> ClosedRoom:
 
 def _person_of(spec: PersonSpec) -> Person:
     return Person(id=spec.id, position_m=spec.position_m, yaw_rad=spec.yaw_rad, must_be_found=spec.must_be_found)
-

@@ -20,9 +20,7 @@ from mintpilot.mission.mind import Mind, Thought, learn
 class Wording(Protocol):
     """Puts a cut into words. Words never decide meaning: the query goes with them."""
 
-    def __call__(
-        self, query: Query, gaps: Sequence[KnowledgeGap], mint: Mint | None, *, attempt: int = 1
-    ) -> Question:
+    def __call__(self, query: Query, gaps: Sequence[KnowledgeGap], mint: Mint | None, *, attempt: int = 1) -> Question:
         """The question for a cut; from the second attempt on in other words."""
         ...
 
@@ -35,21 +33,22 @@ class Interview:
     recorder: Recorder
     settings: AskingSettings
     word: Wording = word_question
-    first: Thought | None = field(default=None, init=False)
-    """The first deliberation: the figures for gaps that were never asked about."""
+    firsts: list[Thought] = field(default_factory=list, init=False)
+    """Deliberations that knew of gaps nobody had known of before: the figures of the accounts come from them."""
     asked_gaps: list[str] = field(default_factory=list, init=False)
     rounds: int = field(default=0, init=False)
 
     def deliberated(self, thought: Thought, seconds: float) -> None:
         """Tells the recorder of one deliberation."""
-        if self.first is None or set(thought.findings.gaps) - set(self.first.findings.gaps):
-            self.first = thought
+        known = {gap.id for first in self.firsts for gap in first.findings.gaps}
+        if {gap.id for gap in thought.findings.gaps} - known:
+            self.firsts.append(thought)
         decision = thought.decision
         self.recorder.record(
             Deliberated(
                 round=self.rounds,
                 gaps=thought.findings.gaps,
-                problem=thought.problem,
+                problem=thought.situation.problem,
                 mint=decision.mint,
                 chosen=decision.scored if isinstance(decision, Ask) else None,
                 alternatives=decision.alternatives if isinstance(decision, Ask) else (),
@@ -85,4 +84,3 @@ def put_question(interview: Interview, mind: Mind, ask: Ask) -> tuple[Mind, Comm
             )
         )
     return lesson.mind, None
-

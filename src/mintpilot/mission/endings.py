@@ -6,7 +6,7 @@ from mintpilot.core.errors import InfeasibleError
 from mintpilot.core.gap import Assumptions
 from mintpilot.core.mission import Outcome, Verdict
 from mintpilot.core.plan import PlanningProblem, Site, Stop
-from mintpilot.core.ports import Judge, Operator, Planner, Vehicle
+from mintpilot.core.ports import Judge, Operator, Planner
 from mintpilot.core.query import Command
 from mintpilot.core.task import Action
 from mintpilot.mission.flight import End, Pilot, Progress
@@ -45,9 +45,7 @@ def obey(pilot: Pilot, planner: Planner, operator: Operator, home: Stop, command
 
 def home_stop(start_m: tuple[float, float, float]) -> Stop:
     """The place where the mission began, as a stop."""
-    return Stop(
-        id="home", action=Action.GO, sites=(Site(position_m=start_m, reach_m=0.5, label="start"),), dwell_s=0.0
-    )
+    return Stop(id="home", action=Action.GO, sites=(Site(position_m=start_m, reach_m=0.5, label="start"),), dwell_s=0.0)
 
 
 def go_home(pilot: Pilot, planner: Planner, home: Stop) -> bool:

@@ -20,6 +20,7 @@ from mintpilot.mission.eyes import Eyes
 from mintpilot.planning.checks import check_path, check_trajectory
 from mintpilot.planning.trajectory import plan_trajectory
 
+
 class End(StrEnum):
     """How flying a plan ended."""
 
@@ -117,24 +118,30 @@ class Pilot:
 
     def _watch(self, rest: list[Floats], pretend_passable: frozenset[str]) -> Watch:
         """Looks at the world in flight; asks for a stop when the way ahead is lost or something new is uncertain."""
-        known = {r.id for r in self.map.regions} | {r.id for r in self.map.rooms}
+        known = frozenset(uncertain_things(self.map))
         way = np.vstack(rest)
 
         def watch(state: VehicleState) -> bool:
             self.map = self.eyes.look(self.map)
-            new = [r for r in (*self.map.regions, *self.map.rooms) if r.id not in known]
+            new = [words for name, words in uncertain_things(self.map).items() if name not in known]
             ahead = _ahead(way, state.position_m)
             lost = check_path(ahead, _pretend(self.map, pretend_passable), self.limits) if len(ahead) else ""
             if lost:
                 self._news = f"the way ahead is not known to be free any more: {lost}"
             elif new:
-                self._news = f"something new and uncertain: {new[0].description or new[0].id}"
+                self._news = f"something new and uncertain: {new[0]}"
             else:
                 return False
             self.recorder.record(Noticed(kind="news", text=self._news))
             return True
 
         return watch
+
+
+def uncertain_things(believed: SemanticMap) -> dict[str, str]:
+    """Regions and rooms of a map: id → what they are called."""
+    regions = {region.id: region.description or region.id for region in believed.regions}
+    return regions | {room.id: room.description or room.id for room in believed.rooms}
 
 
 def _pretend(believed: SemanticMap, passable: frozenset[str]) -> SemanticMap:
@@ -162,4 +169,3 @@ def _facing(leg: Leg, believed: SemanticMap, end_m: Floats) -> float | None:
         target = doors[0] if doors else target
     offset = np.asarray(target[:2]) - end_m[:2]
     return float(np.arctan2(offset[1], offset[0])) if float(np.linalg.norm(offset)) > 0.3 else None
-

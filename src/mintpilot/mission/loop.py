@@ -21,8 +21,6 @@ from mintpilot.mission.flight import End, Pilot
 from mintpilot.mission.mind import Mind, Thinking, think
 from mintpilot.reasoning.belief import prior_belief
 
-RESERVE = 0.1
-"""Share of the flight time that no plan may use."""
 MAX_RETHINKS = 8
 """How often news in flight may send the drone back to thinking before it goes home."""
 
@@ -77,11 +75,12 @@ def _think_and_fly(crew: Crew, mind: Mind) -> Verdict:
         map=mind.map,
         watch_map=crew.watch_map,
     )
+    begun_s = crew.vehicle.state().time_s
     interview = Interview(crew.operator, crew.recorder, thinking.settings, crew.word)
     why = "New things kept turning up in the way."
     for _ in range(MAX_RETHINKS):
         try:
-            mind, decision = _settle(crew, mind, interview)
+            mind, decision = _settle(crew, mind, interview, begun_s)
         except InfeasibleError as error:
             why = str(error)
             break
@@ -101,12 +100,13 @@ def _think_and_fly(crew: Crew, mind: Mind) -> Verdict:
     return stay_or_return(pilot, thinking.planner, crew.operator, home, why)
 
 
-def _settle(crew: Crew, mind: Mind, interview: Interview) -> tuple[Mind, Fly | Command]:
+def _settle(crew: Crew, mind: Mind, interview: Interview, begun_s: float) -> tuple[Mind, Fly | Command]:
     """Thinks and asks until it is clear what to fly (method, sections 3 to 5)."""
     record = crew.recorder.record
     while True:
-        state, limits = crew.vehicle.state(), crew.thinking.mission.limits
-        usable_s = min(state.endurance_left_s, limits.endurance_s) * (1 - RESERVE)
+        state = crew.vehicle.state()
+        unspent_s = crew.thinking.mission.limits.endurance_s - (state.time_s - begun_s)
+        usable_s = min(state.endurance_left_s, unspent_s)
         begun = time.perf_counter()
         thought = think(mind, crew.thinking, start_m=state.position_m, endurance_s=usable_s)
         seconds = time.perf_counter() - begun

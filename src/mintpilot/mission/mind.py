@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 from mintpilot.core.errors import InfeasibleError
 from mintpilot.core.gap import PASSABLE, Belief, CorrelationGroup, GapKind, KnowledgeGap
 from mintpilot.core.geometry import Vec3
 from mintpilot.core.mission import AskingSettings, Mission
-from mintpilot.core.plan import PlanningProblem
 from mintpilot.core.ports import Decision, Fly, ImpactMetric, Planner, QueryObjective, Situation, Strategy
 from mintpilot.core.query import Answer, Query, Reply
 from mintpilot.core.semantic_map import SemanticMap
@@ -63,7 +62,7 @@ class Thought:
 
     mind: Mind
     findings: Findings
-    problem: PlanningProblem
+    situation: Situation
     decision: Decision
 
 
@@ -72,7 +71,7 @@ class Lesson:
     """What an answer did."""
 
     mind: Mind
-    contradiction: bool = field(default=False)
+    contradiction: bool = False
     """The answer goes against earlier ones beyond what the answer error explains; it was not taken into the belief."""
 
 
@@ -123,7 +122,7 @@ def _think(mind: Mind, parts: Thinking, *, start_m: Vec3, endurance_s: float, ho
         metric=parts.metric,
         objective=parts.objective,
     )
-    return Thought(mind=mind, findings=findings, problem=problem, decision=parts.strategy.decide(situation))
+    return Thought(mind=mind, findings=findings, situation=situation, decision=parts.strategy.decide(situation))
 
 
 def learn(mind: Mind, query: Query, answer: Answer, settings: AskingSettings) -> Lesson:

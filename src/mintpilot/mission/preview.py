@@ -26,9 +26,7 @@ class Preview:
     """False when unlikely or very many histories of answers were cut off: the mean is then a lower bound."""
 
 
-def preview(
-    mind: Mind, parts: Thinking, *, start_m: Vec3, endurance_s: float, max_deliberations: int = 200
-) -> Preview:
+def preview(mind: Mind, parts: Thinking, *, start_m: Vec3, endurance_s: float, max_deliberations: int = 200) -> Preview:
     """Thinks once, and then through every history of answers.
 
     Args:

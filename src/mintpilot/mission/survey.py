@@ -131,7 +131,7 @@ class _Surveyor:
 def _turn(position_m: Floats, yaw_rad: float, angle_rad: float, sample_s: float = 0.02) -> Trajectory:
     """A turn on the spot with smooth start and end."""
     duration = abs(angle_rad) / TURN_RATE_RADPS
-    count = max(2, int(math.ceil(duration / sample_s)) + 1)
+    count = max(2, math.ceil(duration / sample_s) + 1)
     time_s = np.linspace(0.0, duration, count)
     share = time_s / duration
     smooth = share - np.sin(2 * math.pi * share) / (2 * math.pi)

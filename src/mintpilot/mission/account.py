@@ -1,0 +1,34 @@
+"""The account of every gap of a mission: asked or not, and why, in figures."""
+
+from __future__ import annotations
+
+from mintpilot.core.tree import GapAccount
+from mintpilot.mission.asking import Interview
+from mintpilot.mission.mind import Thought
+from mintpilot.reasoning.explain import gap_accounts
+from mintpilot.reasoning.tree import build_tree
+
+
+def first_accounts(thought: Thought, *, asked: frozenset[str] = frozenset()) -> tuple[GapAccount, ...]:
+    """The accounts of all gaps of one deliberation, by id.
+
+    Args:
+        thought: the deliberation, the first one that knew of these gaps.
+        asked: ids of gaps that were asked about, then or later.
+    """
+    seen = thought.situation
+    mint = thought.decision.mint or build_tree(seen.space, seen.belief, seen.settings, seen.metric)
+    return gap_accounts(seen.space, seen.belief, mint, seen.settings, seen.metric, asked=asked)
+
+
+def account(interview: Interview, thought: Thought) -> tuple[GapAccount, ...]:
+    """The accounts of every gap that was ever open in a mission.
+
+    Each is taken from the first deliberation that knew of the gap: what it was worth before anything was asked.
+    """
+    asked = frozenset(interview.asked_gaps)
+    accounts: dict[str, GapAccount] = {}
+    for earlier in (*interview.firsts, thought):
+        for one in first_accounts(earlier, asked=asked):
+            accounts.setdefault(one.gap_id, one)
+    return tuple(accounts[name] for name in sorted(accounts))
