@@ -63,8 +63,8 @@ EXTREMES: dict[str, Callable[[View, Thing], float]] = {
 def match(reference: Reference, things: Sequence[Thing], view: View) -> tuple[Thing, ...]:
     """The things that the reference may mean, in the order of ``things``.
 
-    Unnamed attributes may be part of the label (``fire extinguisher``). The label itself counts first; only where nothing has it, its synonyms. Of an extreme (``the largest box``) those
-    within 5 % of the most are kept.
+    Unnamed attributes may be part of the label (``fire extinguisher``). The label itself counts first; only where
+    nothing has it, its synonyms. Of an extreme (``the largest box``) those within 5 % of the most are kept.
     """
     plain = [a for a in reference.attributes if name_of(a) != EXTREME]
     whole = " ".join((*(value_of(a) for a in plain if not name_of(a)), reference.label))

@@ -1,0 +1,193 @@
+"""What people say when they are asked yes or no. Tables only; the order of the rows is the order of reading."""
+
+from __future__ import annotations
+
+import re
+from enum import StrEnum
+
+from mintpilot.core.query import Command
+
+
+class Sign(StrEnum):
+    """What a few words of an answer say."""
+
+    YES = "yes"
+    NO = "no"
+    UNSURE = "unsure"
+    LIKELY = "likely"
+    """A yes with a doubt: enough to choose among boxes, not to open a region."""
+    UNLIKELY = "unlikely"
+    PASSABLE = "passable"
+    BLOCKED = "blocked"
+    PRESENT = "present"
+    ABSENT = "absent"
+    NOISE = "noise"
+    """Politeness and filling words."""
+
+
+def _alternatives(text: str) -> list[str]:
+    """Splits at the bars that are in no group."""
+    parts, depth = [""], 0
+    for letter in text:
+        depth += (letter == "(") - (letter == ")")
+        if letter == "|" and depth == 0:
+            parts.append("")
+        else:
+            parts[-1] += letter
+    return parts
+
+
+def _rows(sign: Sign, *phrases: str) -> list[tuple[re.Pattern[str], Sign]]:
+    ordered = sorted((p for text in phrases for p in _alternatives(text)), key=len, reverse=True)
+    return [(re.compile(rf"(?<![\w']){p}(?![\w'])"), sign) for p in ordered]
+
+
+_IT = "(?:it|that|this|the smoke|the way|the path|the area)"
+_IS = "(?:is|looks|seems|should be|appears)"
+_NOT = "(?:not|never)"
+_BAD = "(?:unsafe|dangerous|toxic|poisonous|hazardous|risky|deadly|blocked|impassable|harmful|thick|hot)"
+_TO_FLY = "(?: to (?:fly|go|pass)(?: through)?)?"
+_THERE = "(?:there is|there's|there are|i see|i saw|i can see|i heard|i hear|we have)"
+_WHO = "(?:a person|people|persons|person|someone|somebody|one person|a man|a woman|a child|a victim|victims)"
+
+SIGNS: tuple[tuple[re.Pattern[str], Sign], ...] = (
+    *_rows(
+        Sign.UNSURE,
+        "yes and no|i do not know|not certain|not sure|not so sure|not really sure|unsure|uncertain|no idea",
+        "no clue|cannot tell",
+        "cannot see|cannot say|hard to say|hard to tell|difficult to say|hard to know|maybe|perhaps|possibly",
+        "might be|could be",
+        "who knows|it depends|depends|let me check|let me see|let me think|let me look|hold on|hang on",
+        "one moment|one second",
+        "just a moment|just a second|give me a second|give me a moment|wait a moment|wait a second|wait|pardon",
+        "sorry what",
+        "say again|say that again|come again|repeat|repeat that|please repeat|repeat the question",
+        "what was that|what",
+        "i did not hear|i did not get that|i did not understand|i do not understand|which one|your choice",
+        "your call",
+        "you decide|either|i have no opinion|i cannot see it|cannot make it out|need to check|dunno|skip",
+        "fifty fifty|do not ask me|i am blind here",
+    ),
+    *_rows(
+        Sign.YES,
+        "no problem|no problem at all|not a problem|no worries|no doubt|without a doubt|no doubt about it",
+        "no objection",
+        "no objections|no question|why not|i do not see why not|do not worry|do not hesitate",
+        "could not agree more",
+    ),
+    *_rows(
+        Sign.BLOCKED,
+        f"(?:{_IT} )?(?:{_IS} )?{_NOT} (?:really |at all |very )?(?:safe|passable|clear|harmless|ok|okay|fine|good)",
+    ),
+    *_rows(
+        Sign.PASSABLE,
+        f"(?:{_IT} )?(?:{_IS} )?(?:{_NOT}|non) {_BAD}",
+    ),
+    *_rows(
+        Sign.NO,
+        "no way|not at all|not really|not yet|not that one|not this one|not that|not this|not it|of course not",
+        "absolutely not|definitely not|certainly not|surely not|better not|rather not|i would not",
+        "i do not think so",
+        "i do not believe so|do not do (?:that|it)|do not go|do not|you cannot|cannot|you must not|you should not",
+        "under no circumstances|by no means|no chance|wrong one|wrong|incorrect|that is not (?:right|true|correct|it)",
+        "it is not|is not|that is not|they are not|there is not|none of them|neither|not ok|no thanks",
+        "no thank you",
+        "stay back|stay away|stay out|stay clear|stay where you are|keep away|keep out|keep clear|back off",
+        "go around",
+        "fly around|take the detour|take the long way|take the other way|avoid it",
+    ),
+    *_rows(Sign.BLOCKED, f"(?:{_IT} )?(?:{_IS} )?(?:too |very |really |extremely )?{_BAD}"),
+    *_rows(
+        Sign.PASSABLE,
+        f"(?:{_IT} )?(?:{_IS} )?(?:perfectly |completely |quite |totally )?(?:safe|passable|harmless){_TO_FLY}",
+        "fly through|fly through it|go through|go through it|you can (?:fly|go|pass)(?: through)?(?: it)?|pass through",
+    ),
+    *_rows(
+        Sign.ABSENT,
+        f"(?:{_THERE} )?(?:nobody|no one|no {_WHO}|no people|none|not anyone|not anybody)(?: (?:is |was )?"
+        "(?:there|inside|in there|in it|left|home|in|here))*",
+        "(?:it is |the room is |the place is |is |room is )?(?:empty|vacant|deserted|unoccupied)",
+        "everybody (?:is |got )?out",
+        "everyone (?:is |got )?out|all out",
+    ),
+    *_rows(
+        Sign.PRESENT,
+        f"{_THERE} {_WHO}(?: (?:is |was )?(?:there|inside|in there|in it|left|in|here|hurt|trapped))*",
+        f"{_WHO} (?:is |was |are |were )?(?:there|inside|in there|in it|left|trapped|in|hurt)",
+        "(?:it is |the room is |is )?(?:not empty|occupied)",
+    ),
+    *_rows(
+        Sign.UNLIKELY,
+        "probably not|i guess not|i suppose not|hardly|unlikely|i doubt it|i doubt that|not likely|likely not",
+    ),
+    *_rows(
+        Sign.LIKELY,
+        "i think so|i think yes|i think|i believe so|i believe|i guess so|i guess|i suppose so|i suppose",
+        "probably|likely|presumably",
+        "most likely|more or less|kind of|sort of|i would say so|i would say|as far as i know|i hope so|i hope",
+        "should be",
+        "seems so|seems to be|looks like it|apparently",
+    ),
+    *_rows(
+        Sign.YES,
+        "yes please|yes|yeah|yea|yep|yup|ya|aye|affirmative|affirm|positive|correct|that is correct",
+        "that is right|that is true",
+        "exactly|precisely|right|sure|sure thing|for sure|of course|absolutely|definitely|certainly|indeed",
+        "surely|totally",
+        "ok|okay|okey|alright|all right|fine|go ahead|go for it|go on|proceed|do it|do that|do so|please do",
+        "roger|roger that",
+        "copy that|copy|confirmed|confirm|i confirm|true|that is the one|that is it|that one|this one|it is",
+        "they are",
+        "that is fine|that is ok|there is|by all means|you can|you may|looks fine(?: to me)?|looks good(?: to me)?",
+        "good to go",
+        "sounds good|you got it|bingo|spot on|continue|carry on|thumbs up|it does|it can|you should|yes sir",
+        "yes it is|uh huh|mhm",
+        "(?:you are |the way is |it is |path is |all )?clear|y",
+    ),
+    *_rows(Sign.NO, "no|nope|nah|na|negative|never|not|false|no sir|nay|n|non|it does not|without|uh uh|none"),
+    *_rows(
+        Sign.NOISE,
+        "please|thank you|thanks|sir|drone|well|oh|um|uh|er|hm|hmm|so|then|now|just|really|very|careful",
+        "be careful|slowly|and|the",
+        "a|an|one|box|it|that|this|to me|me|i|you|for|of|is|go|take|take it|i mean|mean|in|there|to|with|are",
+        "am|was|do",
+        "you want|want|need|needed|we|they|at|all|here|got|hey|man|mate|buddy|think|say|said|my friend",
+        "please go|on|too",
+    ),
+)
+"""Words → sign. Read in this order; what was read is taken out."""
+
+CORRECTION = re.compile(
+    r"\b(?:actually|no wait|wait no|i mean|sorry|correction|scratch that|rather|on second thought)\b"
+)
+"""What comes after counts."""
+
+CONDITION = re.compile(
+    r"\b(?:if|unless|until|only|but|except|as long as|provided|when|once|after|before|though|however)\b"
+)
+"""An answer with a condition is no answer."""
+
+GENTLE = re.compile(r"\bbut (?:be |go |fly )?(?:careful|carefully|slow|slowly|gently|watch out|quick|quickly)\b")
+"""A condition that changes nothing."""
+
+COMMANDS: tuple[tuple[re.Pattern[str], Command], ...] = (
+    (
+        re.compile(r"\b(?:abort|cancel (?:the )?(?:mission|flight|task)|call it off|end the mission|mayday|give up)\b"),
+        Command.ABORT,
+    ),
+    (
+        re.compile(
+            r"\b(?:come|go|fly|get|head) (?:straight )?(?:back|home)\b"
+            r"|\breturn\b(?: to (?:base|home|me|start|the pad))?|\brtl\b"
+        ),
+        Command.RETURN,
+    ),
+    (
+        re.compile(
+            r"\b(?:stop|halt|freeze|pause|emergency)\b|\bhold (?:position|it|there|still|your position)\b"
+            r"|^hold$|\bstay (?:put|there|right there|where you are)\b|\bdo not move\b"
+        ),
+        Command.HOLD,
+    ),
+)
+"""Orders, the strongest first. They are obeyed at once, so that only a plain negation before them takes them back."""

@@ -1,0 +1,78 @@
+"""Which candidates of a target gap an answer names: ``not the red one, the blue one``."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from mintpilot.core.gap import Candidate, GapKind, KnowledgeGap
+from mintpilot.core.query import Literal, Saying, SayingKind
+
+_ALIKE = {
+    **dict.fromkeys(("big", "bigger", "biggest", "larger", "largest", "huge"), "large"),
+    **dict.fromkeys(("little", "smaller", "smallest", "tiny"), "small"),
+    "gray": "grey",
+}
+_STOP = frozenset(("the", "a", "an", "of", "with", "and", "to", "near", "one", "it", "is", "on", "in", "at", "by"))
+_NOT = re.compile(r"\b(?:not|never|no|nor|neither|except|without)\b(?: (?:the|a|an|that|this|any))*$")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Mention:
+    """What an answer says about the candidates."""
+
+    gap: KnowledgeGap | None
+    values: frozenset[str]
+    """Candidates that it leaves; empty where it says nothing of them, or rules out all."""
+    rest: str
+    """The answer without those words."""
+    confused: bool = False
+    """True when it names candidates in a way that leaves none."""
+
+    def literal(self) -> Literal | None:
+        """The same as a cut that is answered Yes."""
+        if self.gap is None or not self.values or len(self.values) == len(self.gap.values):
+            return None
+        return Literal(gap=self.gap.id, values=self.values, saying=Saying(kind=SayingKind.VALUE))
+
+
+def mention(words: str, gaps: Sequence[KnowledgeGap]) -> Mention:
+    """Finds attribute values of the candidates in an answer; a word that fits all or none of them says nothing.
+
+    Args:
+        words: the answer in lower case, punctuation apart.
+        gaps: the question's gaps; only where exactly one of them is a target gap can candidates be named.
+    """
+    targets = [g for g in gaps if g.kind is GapKind.TARGET]
+    if len(targets) != 1:
+        return Mention(gap=None, values=frozenset(), rest=words)
+    (gap,) = targets
+    named, ruled_out, rest, any_named = set(gap.values), set[str](), [], False
+    for token in re.finditer(r"[\w']+|[,.;!?]", words):
+        fits = {c.id for c in gap.candidates if _ALIKE.get(token[0], token[0]) in _words_of(c)}
+        if not fits or len(fits) == len(gap.candidates):
+            rest.append(token[0])
+        elif _NOT.search(" ".join(rest[-4:])):
+            ruled_out |= fits
+            _take_back(rest)
+        else:
+            named &= fits
+            any_named = True
+    values = named - ruled_out if any_named or ruled_out else set()
+    confused = not values and (any_named or bool(ruled_out))
+    return Mention(gap=gap, values=frozenset(values), rest=" ".join(rest), confused=confused)
+
+
+def _words_of(candidate: Candidate) -> frozenset[str]:
+    """Words that single values of the candidate's attributes are made of."""
+    said = " ".join(a.value for a in candidate.attributes).lower().replace("_", " ")
+    return frozenset(_ALIKE.get(w, w) for w in re.findall(r"\w+", said)) - _STOP
+
+
+def _take_back(rest: list[str]) -> None:
+    """Takes the negation off that was used up by what follows it."""
+    while rest and rest[-1] in ("the", "a", "an", "that", "this", "any"):
+        rest.pop()
+    if rest:
+        rest.pop()
