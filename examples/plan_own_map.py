@@ -1,6 +1,6 @@
 """Think about a mission on a map of your own: what is not known, what would be asked, and why. No simulator needed.
 
-    python examples/plan_own_map.py
+python examples/plan_own_map.py
 """
 
 from pathlib import Path

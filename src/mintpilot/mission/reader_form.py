@@ -5,6 +5,7 @@ from __future__ import annotations
 import difflib
 import json
 from collections.abc import Iterable, Mapping
+from functools import cache
 from typing import Any
 
 from pydantic_core import ErrorDetails
@@ -52,12 +53,17 @@ def nearest(name: str, known: Iterable[str]) -> str:
     return f"{hint}known: {', '.join(names) or '(none)'}"
 
 
+@cache
+def _schema() -> dict[str, Any]:
+    return MissionFile.model_json_schema()
+
+
 class FormWords:
     """Translates pydantic's findings about one document."""
 
     def __init__(self, value: Value) -> None:
         self._value = value
-        self._schema = MissionFile.model_json_schema()
+        self._schema = _schema()
 
     def path(self, loc: tuple[str | int, ...]) -> Path_:
         """The place in the file: pydantic's location without the names of its own union members."""

@@ -65,6 +65,8 @@ class AskingSpec(Spec):
     """Joint hypotheses below this probability are not planned for."""
     question_price_s: NotNegative = 0.0
     """What a question costs the person, in seconds of flight."""
+    failure_price_s: NotNegative = 600.0
+    """What a failed mission counts for, in seconds of flight, where expected losses are weighed."""
     max_questions: Annotated[int, Field(ge=0)] = 20
     """Budget of questions."""
     patience_s: NotNegative = 30.0
