@@ -41,6 +41,11 @@ class Workspace:
         self.tag += 1
         return self.tag
 
+    def grown_tag(self) -> int:
+        """The number of a new search, after doubling the pool."""
+        self.pool = np.empty(2 * self.pool.size, kernels.ENTRY)
+        return self.next_tag()
+
 
 class GridSearch:
     """Searches on one grid.
@@ -82,21 +87,25 @@ class GridSearch:
         lattice, work, moves = self.lattice, self.work, self.lattice.moves
         if not (lattice.free[source] and lattice.free[target]):
             return np.inf, np.zeros(0, np.int64)
-        cost, self.expanded, work.pool = kernels.astar(
-            allowed,
-            lattice.offset,
-            moves.step,
-            moves.length,
-            moves.natural,
-            lattice.padded[2],
-            lattice.padded[1],
-            source,
-            target,
-            guide,
-            work.cells,
-            work.next_tag(),
-            work.pool,
-        )
+        tag = work.next_tag()
+        cost = kernels.FULL
+        while cost == kernels.FULL:
+            cost, self.expanded = kernels.astar(
+                allowed,
+                lattice.offset,
+                moves.step,
+                moves.length,
+                moves.natural,
+                lattice.padded[2],
+                lattice.padded[1],
+                source,
+                target,
+                guide,
+                work.cells,
+                tag,
+                work.pool,
+            )
+            tag = work.grown_tag() if cost == kernels.FULL else tag
         if not np.isfinite(cost):
             return np.inf, np.zeros(0, np.int64)
         return cost, kernels.walk_back(work.cells, lattice.offset, source, target)
@@ -104,21 +113,25 @@ class GridSearch:
     def node_field(self, source: int, target: int, bound: float, allowed: Words) -> None:
         """Leaves in `Workspace.cells`, under the present tag, the distances of `kernels.field`."""
         lattice, work, moves = self.lattice, self.work, self.lattice.moves
-        self.expanded, work.pool = kernels.field(
-            allowed,
-            lattice.offset,
-            moves.step,
-            moves.length,
-            moves.natural,
-            lattice.padded[2],
-            lattice.padded[1],
-            source,
-            target,
-            bound,
-            work.cells,
-            work.next_tag(),
-            work.pool,
-        )
+        tag = work.next_tag()
+        self.expanded = -1
+        while self.expanded < 0:
+            self.expanded = kernels.field(
+                allowed,
+                lattice.offset,
+                moves.step,
+                moves.length,
+                moves.natural,
+                lattice.padded[2],
+                lattice.padded[1],
+                source,
+                target,
+                bound,
+                work.cells,
+                tag,
+                work.pool,
+            )
+            tag = work.grown_tag() if self.expanded < 0 else tag
 
     def distances(self, source: ArrayLike, bound: float = np.inf) -> Floats:
         """Distance in edges from a cell (z, y, x) to every cell (nz, ny, nx).

@@ -7,7 +7,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from mintpilot.core.geometry import Floats, Ints
-from mintpilot.planning.kernels import RING, SLACK, WIDTH, grown, lowest_bit
+from mintpilot.planning.kernels import PER_EDGE, RING, SLACK, lowest_bit
 from mintpilot.planning.lattice import NEAR, Words
 from mintpilot.planning.moves import NO_MOVE
 
@@ -31,7 +31,7 @@ _DEAD = 64
 _FIRST = 32  # a node's `last` below it is still the move of the field search: the node has no label yet
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def beaten(found: NDArray[np.void], count: int, cost: float, mask: np.uint64) -> bool:
     """Whether a way at most as dear, through no other regions, is known. ``found`` is sorted by cost."""
     for i in range(count):
@@ -42,11 +42,9 @@ def beaten(found: NDArray[np.void], count: int, cost: float, mask: np.uint64) ->
     return False
 
 
-@njit(cache=True)
-def keep(found: NDArray[np.void], count: int, cost: float, mask: np.uint64, label: int) -> tuple[NDArray[np.void], int]:
-    """Adds a way, sorted by cost, and drops those that it beats."""
-    if count == found.size:
-        found = grown(found)
+@njit(cache=True, error_model="numpy")
+def keep(found: NDArray[np.void], count: int, cost: float, mask: np.uint64, label: int) -> int:
+    """Adds a way, sorted by cost, and drops those that it beats; the new number of ways."""
     rest = 0
     for i in range(count):
         if not (found[i].cost >= cost - SLACK and mask & ~found[i].mask == 0):
@@ -56,11 +54,13 @@ def keep(found: NDArray[np.void], count: int, cost: float, mask: np.uint64, labe
     while i > 0 and found[i - 1].cost > cost:
         found[i] = found[i - 1]
         i -= 1
-    found[i].cost, found[i].mask, found[i].label = cost, mask, label
-    return found, rest + 1
+    found[i].cost = cost
+    found[i].mask = mask
+    found[i].label = label
+    return rest + 1
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def admit(pool: NDArray[np.void], cells: NDArray[np.void], to: int, cost: float, mask: np.uint64) -> bool:
     """Whether no label of the node beats (cost, mask); labels that it beats are dropped."""
     above = -1
@@ -81,7 +81,7 @@ def admit(pool: NDArray[np.void], cells: NDArray[np.void], to: int, cost: float,
     return True
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def search_labels(
     allowed: Words,
     offset: Ints,
@@ -92,60 +92,47 @@ def search_labels(
     start: int,
     goal: int,
     bound: float,
-    budget: int,
     cells: NDArray[np.void],
     tag: int,
     pool: NDArray[np.void],
-) -> tuple[bool, int, int, int, NDArray[np.void], NDArray[np.void]]:
+    found: NDArray[np.void],
+) -> tuple[int, int, int]:
     """All ways from start to goal that are best under some set of blocked regions.
 
     ``cells`` holds, under ``tag``, the exact distances to the goal on the optimistic map of every node that may matter.
-    ``bound`` is the cost of the way that enters no region, or infinity; that way itself is entry with label -1.
+    ``bound`` is the cost of the way that enters no region, or infinity; that way itself has label -1.
 
     Returns:
-        (whether the budget of labels sufficed, number of ways, labels made, labels expanded, the ways, the pool).
+        (number of ways in ``found``, or -1 when ``found`` or ``pool`` is too small; labels made; labels expanded).
     """
-    found = np.empty(64, FOUND)
     count = 0
     if bound < np.inf:
-        found, count = keep(found, count, bound, np.uint64(0), -1)
+        count = keep(found, count, bound, np.uint64(0), -1)
     if cells[start].tag != tag:
-        return True, count, 0, 0, found, pool
-    full = natural[NO_MOVE]
+        return count, 0, 0
     f0 = cells[start].g
     head = np.full(RING, -1, np.int32)
-    first = pool[0]
-    first.g, first.mask, first.node, first.parent = 0.0, region[start], start, -1
-    first.below, first.next, first.last = -1, -1, NO_MOVE
-    cells[start].last = _FIRST
-    head[0] = 0
+    append(pool, cells, head, 0, 0, 0.0, region[start], start, -1, NO_MOVE)
     used, queued, bucket, expanded = 1, 1, 0, 0
     while queued > 0:
-        slot = bucket & (RING - 1)
-        label = head[slot]
+        label = head[bucket & (RING - 1)]
         if label < 0:
             bucket += 1
             continue
-        head[slot] = pool[label].next
+        head[bucket & (RING - 1)] = pool[label].next
         queued -= 1
-        last = pool[label].last
-        if last & _DEAD:
+        node, g, mask, last = pool[label].node, pool[label].g, pool[label].mask, pool[label].last
+        if last & _DEAD or beaten(found, count, g + cells[node].g, mask):
             continue
-        node, g, mask = pool[label].node, pool[label].g, pool[label].mask
-        if beaten(found, count, g + cells[node].g, mask):
-            continue
+        if used + length.size > pool.size or count == found.size:
+            return -1, used, expanded
         if node == goal:
-            found, count = keep(found, count, g, mask, label)
+            count = keep(found, count, g, mask, label)
             continue
-        if used + 32 > budget:
-            return False, count, used, expanded, found, pool
-        if used + 32 > pool.size:
-            pool = grown(pool)
         expanded += 1
-        word = allowed[node]
-        near = word & NEAR
-        word &= ~NEAR
-        if near == 0 and word == full:
+        near = allowed[node] & NEAR
+        word = allowed[node] & ~NEAR
+        if allowed[node] == natural[NO_MOVE]:
             word &= natural[last]
         while word:
             k = lowest_bit(word)
@@ -161,18 +148,47 @@ def search_labels(
             f = cost + cells[to].g
             if beaten(found, count, f, entered) or not admit(pool, cells, to, cost, entered):
                 continue
-            slot = max(bucket, int((f - f0) * (1 / WIDTH))) & (RING - 1)
-            new = pool[used]
-            new.g, new.mask, new.node, new.parent, new.last = cost, entered, to, label, k
-            new.below, new.next = max(cells[to].last - _FIRST, -1), head[slot]
-            cells[to].last = _FIRST + used
-            head[slot] = used
+            at = max(bucket, int((f - f0) * PER_EDGE))
+            append(pool, cells, head, used, at, cost, entered, to, label, k)
             used += 1
             queued += 1
-    return True, count, used, expanded, found, pool
+    return count, used, expanded
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
+def append(
+    pool: NDArray[np.void],
+    cells: NDArray[np.void],
+    head: NDArray[np.int32],
+    new: int,
+    bucket: int,
+    g: float,
+    mask: np.uint64,
+    node: int,
+    parent: int,
+    last: int,
+) -> None:
+    """Writes a new label, and puts it on its node's list and in its bucket."""
+    slot = bucket & (RING - 1)
+    pool[new].g = g
+    pool[new].mask = mask
+    pool[new].node = node
+    pool[new].parent = parent
+    pool[new].last = last
+    pool[new].below = max(cells[node].last - _FIRST, -1)
+    pool[new].next = head[slot]
+    cells[node].last = _FIRST + new
+    head[slot] = new
+
+
+@njit(cache=True, error_model="numpy")
+def forget(pool: NDArray[np.void], used: int, cells: NDArray[np.void]) -> None:
+    """Takes all labels off their nodes, so that the search can begin anew."""
+    for i in range(used):
+        cells[pool[i].node].last = 0
+
+
+@njit(cache=True, error_model="numpy")
 def trace(pool: NDArray[np.void], label: int) -> Ints:
     """Nodes (n,) from the start to where the label is."""
     count = 0

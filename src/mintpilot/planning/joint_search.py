@@ -56,7 +56,8 @@ class JointSearch:
         """Joint searches made so far."""
         self.labels = 0
         """Labels that the last search made."""
-        self._pool: NDArray[np.void] = np.empty(1 << 14, joint_kernel.LABEL)
+        self._pool: NDArray[np.void] = np.empty(min(1 << 14, self.effort.labels), joint_kernel.LABEL)
+        self._found: NDArray[np.void] = np.empty(1 << 10, joint_kernel.FOUND)
         self._overlays: dict[tuple[int, ...], Overlay] = {}
 
     def between(self, start: ArrayLike, goal: ArrayLike) -> DecisionList[Ints]:
@@ -136,23 +137,37 @@ class JointSearch:
     ) -> tuple[bool, list[Way[NDArray[np.int64]]]]:
         """The search over labels; needs the field of distances to the goal in the workspace."""
         lattice, work, moves = self.grid.lattice, self.grid.work, self.grid.lattice.moves
-        done, count, self.labels, self.grid.expanded, found, self._pool = joint_kernel.search_labels(
-            overlay.near,
-            lattice.offset,
-            moves.length,
-            moves.natural,
-            lattice.swept,
-            overlay.region,
-            start,
-            goal,
-            bound,
-            self.effort.labels,
-            work.cells,
-            work.tag,
-            self._pool,
-        )
-        labels = [int(i) for i in found["label"][:count] if i >= 0] if done else []
-        return done, [self._way(joint_kernel.trace(self._pool, i), overlay) for i in labels]
+        count = -1
+        while count < 0:
+            count, self.labels, self.grid.expanded = joint_kernel.search_labels(
+                overlay.near,
+                lattice.offset,
+                moves.length,
+                moves.natural,
+                lattice.swept,
+                overlay.region,
+                start,
+                goal,
+                bound,
+                work.cells,
+                work.tag,
+                self._pool,
+                self._found,
+            )
+            if count < 0:
+                joint_kernel.forget(self._pool, self.labels, work.cells)
+                if not self._grow():
+                    return False, []
+        labels = [int(i) for i in self._found["label"][:count] if i >= 0]
+        return True, [self._way(joint_kernel.trace(self._pool, i), overlay) for i in labels]
+
+    def _grow(self) -> bool:
+        """Makes room for more labels and ways; False when the budget is spent."""
+        if self._pool.size >= self.effort.labels:
+            return False
+        self._pool = np.empty(min(4 * self._pool.size, self.effort.labels), joint_kernel.LABEL)
+        self._found = np.empty(4 * self._found.size, joint_kernel.FOUND)
+        return True
 
     def _branch(
         self, start: int, goal: int, overlay: Overlay, chosen: tuple[int, ...]

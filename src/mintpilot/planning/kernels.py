@@ -1,8 +1,11 @@
 """Compiled searches over a lattice: A* and distance fields with a ring of buckets.
 
 Both are label-correcting: a bucket holds nodes whose priority lies in one interval, in no order; a node improved later
-is queued again. A move changes the priority by at most ``2 * sqrt(3)``, so a short ring of buckets is enough. The pool
-of queue entries grows when it is full. Kernels are compiled once and cached on disk.
+is queued again. A move changes the priority by at most ``2 * sqrt(3)``, so a short ring of buckets is enough.
+
+The queue's entries live in a pool; used ones are given out again. When the pool is too small a kernel returns `FULL`,
+the caller doubles the pool and calls again: growing inside a kernel would keep the compiler from holding the pool's
+address in a register, which costs a factor of four. Kernels are compiled once and cached on disk.
 """
 
 from __future__ import annotations
@@ -22,13 +25,18 @@ from mintpilot.planning.moves import NO_MOVE
 CELL = np.dtype([("g", np.float64), ("tag", np.uint32), ("last", np.int32)])
 """A node's state: cost so far, the number of the search that wrote it, the move that led here."""
 ENTRY = np.dtype([("g", np.float64), ("node", np.int32), ("next", np.int32)])
-"""A queued node and the next entry of its bucket."""
+"""A queued node and the next entry of its bucket (or of the unused ones)."""
 
+FULL = -1.0
+"""Returned instead of a cost when the pool is too small."""
 RING = 64
-WIDTH = 0.125
+"""Number of buckets."""
+PER_EDGE = 8.0
+"""Buckets per edge of cost."""
 SLACK = 1e-9
 """Costs closer than this are equal: they are sums of the same numbers in another order."""
 CLOSED = 64
+"""Added to the last move of a node that has been expanded."""
 
 
 def _lowest_bit(typingctx: Any, word: Any) -> Any:  # noqa: ARG001
@@ -42,29 +50,61 @@ lowest_bit: Callable[[np.uint32], int] = cast(Any, intrinsic)(_lowest_bit)
 """Index of the lowest bit that is set (the word must not be 0)."""
 
 
-@njit(cache=True)
-def octile(a: int, b: int, c: int) -> float:
+@njit(cache=True, error_model="numpy")
+def octile(a: float, b: float, c: float) -> float:
     """Length of the shortest path over |a|, |b|, |c| cells of empty space."""
     a, b, c = abs(a), abs(b), abs(c)
     low = min(a, b)
     high = max(a, b)
-    mid = min(high, max(low, c))
-    return max(high, c) + 0.41421356237309515 * mid + 0.31783724519578205 * min(low, c)
+    middle = min(high, max(low, c))
+    return max(high, c) + 0.41421356237309515 * middle + 0.31783724519578205 * min(low, c)
 
 
-@njit(cache=True)
-def grown(pool: NDArray[np.void]) -> NDArray[np.void]:
-    """The same pool with twice the room."""
-    bigger = np.empty(2 * pool.size, pool.dtype)
-    bigger[: pool.size] = pool
-    return bigger
+@njit(cache=True, error_model="numpy")
+def coordinates(node: int, nx: int, ny: int) -> tuple[float, float, float]:
+    """(x, y, z) of a node. Exact below 2^31 nodes, and faster than dividing whole numbers."""
+    row = int((node + 0.5) * (1.0 / nx))
+    layer = int((row + 0.5) * (1.0 / ny))
+    return float(node - row * nx), float(row - layer * ny), float(layer)
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
+def begin(cells: NDArray[np.void], pool: NDArray[np.void], head: NDArray[np.int32], source: int, tag: int) -> None:
+    """Queues the first node."""
+    cells[source].g = 0.0
+    cells[source].tag = tag
+    cells[source].last = NO_MOVE
+    pool[0].g = 0.0
+    pool[0].node = source
+    pool[0].next = -1
+    head[:] = -1
+    head[0] = 0
+
+
+@njit(cache=True, error_model="numpy")
+def put(
+    pool: NDArray[np.void], head: NDArray[np.int32], bucket: int, node: int, g: float, spare: int, used: int
+) -> tuple[int, int]:
+    """Queues a node in a bucket; (first unused entry or -1, number of entries ever used)."""
+    entry = spare
+    if entry >= 0:
+        spare = pool[entry].next
+    else:
+        entry = used
+        used += 1
+    slot = bucket & (RING - 1)
+    pool[entry].g = g
+    pool[entry].node = node
+    pool[entry].next = head[slot]
+    head[slot] = entry
+    return spare, used
+
+
+@njit(cache=True, error_model="numpy")
 def astar(
     allowed: NDArray[np.uint32],
     offset: Ints,
-    step: NDArray[np.int32],
+    step: Floats,
     length: Floats,
     natural: NDArray[np.uint32],
     nx: int,
@@ -75,49 +115,50 @@ def astar(
     cells: NDArray[np.void],
     tag: int,
     pool: NDArray[np.void],
-) -> tuple[float, int, NDArray[np.void]]:
-    """A* from start to goal; (cost or infinity, nodes expanded, the pool). Moves that led to each node stay in cells.
+) -> tuple[float, int]:
+    """A* from start to goal; (cost, infinity or `FULL`; nodes expanded). Moves that led to each node stay in cells.
 
-    ``guide`` is an exact lower bound of the distance to the goal of every node, or None for the octile distance.
+    ``guide`` is a consistent lower bound of the distance to the goal of every node, or None for the octile distance.
     """
-    full = natural[NO_MOVE]
-    gx, gy, gz = goal % nx, goal // nx % ny, goal // (nx * ny)
-    if guide is None:  # noqa: SIM108 - numba prunes the branch, not the expression
-        f0 = octile(start % nx - gx, start // nx % ny - gy, start // (nx * ny) - gz)
+    gx, gy, gz = coordinates(goal, nx, ny)
+    x, y, z = coordinates(start, nx, ny)
+    if guide is None:  # noqa: SIM108 - the compiler prunes the branch, but not the expression
+        f0 = octile(x - gx, y - gy, z - gz)
     else:
         f0 = guide[start]
-    best = np.inf
     if f0 == np.inf:
-        return best, 0, pool
-    head = np.full(RING, -1, np.int32)
-    cells[start].g, cells[start].tag, cells[start].last = 0.0, tag, NO_MOVE
-    pool[0].g, pool[0].node, pool[0].next = 0.0, start, -1
-    head[0] = 0
+        return np.inf, 0
+    head = np.empty(RING, np.int32)
+    begin(cells, pool, head, start, tag)
+    best, limit = np.inf, np.inf
     spare, used, queued, bucket, expanded = -1, 1, 1, 0, 0
     while queued > 0:
-        slot = bucket & (RING - 1)
-        i = head[slot]
-        if i < 0:
+        entry = head[bucket & (RING - 1)]
+        if entry < 0:
             bucket += 1
-            if best <= f0 + bucket * WIDTH + SLACK:
+            if best <= f0 + bucket / PER_EDGE + SLACK:
                 break
             continue
-        node, g = pool[i].node, pool[i].g
-        head[slot], pool[i].next, spare = pool[i].next, spare, i
+        node, g = pool[entry].node, pool[entry].g
+        head[bucket & (RING - 1)] = pool[entry].next
+        pool[entry].next = spare
+        spare = entry
         queued -= 1
         last = cells[node].last
         if cells[node].g != g or last & CLOSED:
             continue
         cells[node].last = last | CLOSED
         if node == goal:
-            best = g
-            if best <= f0 + bucket * WIDTH + SLACK:
-                break
+            best, limit = g, g - SLACK
             continue
         expanded += 1
-        x, y, z = node % nx - gx, node // nx % ny - gy, node // (nx * ny) - gz
+        if used + length.size > pool.size:
+            return FULL, expanded
+        x, y, z = coordinates(node, nx, ny)
+        if best < np.inf and guide is None and g + octile(x - gx, y - gy, z - gz) >= limit:
+            continue
         word = allowed[node]
-        if word == full:
+        if word == natural[NO_MOVE]:
             word &= natural[last]
         while word:
             k = lowest_bit(word)
@@ -127,32 +168,24 @@ def astar(
             if cells[to].tag == tag and cost >= cells[to].g - 1e-12:
                 continue
             if guide is None:  # noqa: SIM108
-                f = cost + octile(x + step[k, 2], y + step[k, 1], z + step[k, 0])
+                f = cost + octile(x + step[k, 2] - gx, y + step[k, 1] - gy, z + step[k, 0] - gz)
             else:
                 f = cost + guide[to]
-            if f >= best - SLACK or f == np.inf:
+            if not f < limit:
                 continue
-            cells[to].g, cells[to].tag, cells[to].last = cost, tag, k
-            slot = max(bucket, int((f - f0) * (1 / WIDTH))) & (RING - 1)
-            i = spare
-            if i >= 0:
-                spare = pool[i].next
-            else:
-                if used == pool.size:
-                    pool = grown(pool)
-                i = used
-                used += 1
-            pool[i].g, pool[i].node, pool[i].next = cost, to, head[slot]
-            head[slot] = i
+            cells[to].g = cost
+            cells[to].tag = tag
+            cells[to].last = k
+            spare, used = put(pool, head, max(bucket, int((f - f0) * PER_EDGE)), to, cost, spare, used)
             queued += 1
-    return best, expanded, pool
+    return best, expanded
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def field(
     allowed: NDArray[np.uint32],
     offset: Ints,
-    step: NDArray[np.int32],
+    step: Floats,
     length: Floats,
     natural: NDArray[np.uint32],
     nx: int,
@@ -163,34 +196,34 @@ def field(
     cells: NDArray[np.void],
     tag: int,
     pool: NDArray[np.void],
-) -> tuple[int, NDArray[np.void]]:
+) -> int:
     """Distances from the source to all nodes that may lie on a way to the target of at most ``bound``.
 
     The test is distance + octile distance to the target <= bound; with target -1 it is distance <= bound. Distances
-    of all nodes that pass are exact. They stay in ``cells``. Returns (nodes expanded, the pool).
+    of all nodes that pass are exact. They stay in ``cells``. Returns the nodes expanded, or -1 when the pool is full.
     """
-    full = natural[NO_MOVE]
-    gx, gy, gz = target % nx, target // nx % ny, target // (nx * ny)
-    head = np.full(RING, -1, np.int32)
-    cells[source].g, cells[source].tag, cells[source].last = 0.0, tag, NO_MOVE
-    pool[0].g, pool[0].node, pool[0].next = 0.0, source, -1
-    head[0] = 0
+    gx, gy, gz = coordinates(max(target, 0), nx, ny)
+    head = np.empty(RING, np.int32)
+    begin(cells, pool, head, source, tag)
     spare, used, queued, bucket, expanded = -1, 1, 1, 0, 0
     while queued > 0:
-        slot = bucket & (RING - 1)
-        i = head[slot]
-        if i < 0:
+        entry = head[bucket & (RING - 1)]
+        if entry < 0:
             bucket += 1
             continue
-        node, g = pool[i].node, pool[i].g
-        head[slot], pool[i].next, spare = pool[i].next, spare, i
+        node, g = pool[entry].node, pool[entry].g
+        head[bucket & (RING - 1)] = pool[entry].next
+        pool[entry].next = spare
+        spare = entry
         queued -= 1
         if cells[node].g != g:
             continue
         expanded += 1
-        x, y, z = node % nx - gx, node // nx % ny - gy, node // (nx * ny) - gz
+        if used + length.size > pool.size:
+            return -1
+        x, y, z = coordinates(node, nx, ny)
         word = allowed[node]
-        if word == full:
+        if word == natural[NO_MOVE]:
             word &= natural[cells[node].last]
         while word:
             k = lowest_bit(word)
@@ -199,26 +232,18 @@ def field(
             cost = g + length[k]
             if cells[to].tag == tag and cost >= cells[to].g - 1e-12:
                 continue
-            ahead = octile(x + step[k, 2], y + step[k, 1], z + step[k, 0]) if target >= 0 else 0.0
+            ahead = octile(x + step[k, 2] - gx, y + step[k, 1] - gy, z + step[k, 0] - gz) if target >= 0 else 0.0
             if cost + ahead > bound + SLACK:
                 continue
-            cells[to].g, cells[to].tag, cells[to].last = cost, tag, k
-            slot = max(bucket, int(cost * 2)) & (RING - 1)
-            i = spare
-            if i >= 0:
-                spare = pool[i].next
-            else:
-                if used == pool.size:
-                    pool = grown(pool)
-                i = used
-                used += 1
-            pool[i].g, pool[i].node, pool[i].next = cost, to, head[slot]
-            head[slot] = i
+            cells[to].g = cost
+            cells[to].tag = tag
+            cells[to].last = k
+            spare, used = put(pool, head, max(bucket, int(cost * 2)), to, cost, spare, used)
             queued += 1
-    return expanded, pool
+    return expanded
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def walk_back(cells: NDArray[np.void], offset: Ints, start: int, goal: int) -> Ints:
     """Nodes (n,) from start to goal, along the moves that a search left in cells."""
     count = 1

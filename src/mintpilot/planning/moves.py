@@ -30,8 +30,8 @@ NO_MOVE = 31
 class Moves:
     """The 8 or 26 moves."""
 
-    step: NDArray[np.int32]
-    """(n, 3) change of (z, y, x)."""
+    step: Floats
+    """(n, 3) change of (z, y, x), whole numbers."""
     length: Floats
     """(n,) in edges."""
     needs: NDArray[np.uint32]
@@ -47,7 +47,7 @@ def _moves(layers: tuple[int, ...]) -> Moves:
     for k, step in enumerate(steps):
         natural[k] = _bits(j for j, other in enumerate(steps) if _nested(other, step))
     return Moves(
-        step=np.array(steps, np.int32),
+        step=np.array(steps, float),
         length=np.sqrt(np.abs(np.array(steps, float)).sum(axis=1)),
         needs=np.array([_bits(i for i, c in enumerate(around) if c in _block(s)) for s in steps], np.uint32),
         natural=natural,
