@@ -17,6 +17,7 @@ from mintpilot.core.query import Combine, Literal, Query, Saying, SayingKind
 from mintpilot.core.tree import Mint
 from mintpilot.elicitation.ease import effort
 from mintpilot.elicitation.referents import referent_literals
+from mintpilot.elicitation.sentences import is_sayable
 
 MAX_TOGETHER = 3
 """Most gaps in one any-of or all-of cut."""
@@ -60,9 +61,10 @@ def candidate_queries(
     Args:
         mint: the tree; only gaps that it branches on are asked about.
         start_m: where the drone is, metres.
-        refused: ids of cuts not to be asked; a cut that divides the hypotheses alike is not asked in other words either.
+        refused: ids of cuts not to be asked; nor are others that divide the hypotheses alike.
     """
     support = mint.support
+    gaps = {g.id: g for g in mint.belief.gaps}
     literals = {g.id: gap_literals(g, start_m) for g in mint.belief.gaps}
     queries = sorted(set(_queries(literals, mint.belief.gaps)), key=lambda q: (effort(q), q.id))
     most = max(1, min(MAX_CUTS, MAX_CELLS // max(1, support.size)))
@@ -71,6 +73,8 @@ def candidate_queries(
     for query in queries:
         if len(kept) >= most:
             break
+        if len(query.literals) > 1 and not is_sayable(query, gaps):
+            continue
         row = query.truths(mint.belief).ravel()[support]
         if row.all() or not row.any():
             continue

@@ -15,7 +15,7 @@ _EFFORT = {
 def effort(query: Query) -> float:
     """Effort of saying and answering a cut, without unit; lower is easier.
 
-    One named thing is easiest, then an attribute, a threshold, a relation; every further literal adds its own effort and
-    one more for the joining word.
+    One named thing is easiest, then an attribute, a threshold, a relation; every further literal adds its own effort
+    and one more for the joining word.
     """
     return sum(_EFFORT[x.saying.kind] for x in query.literals) + (len(query.literals) - 1)

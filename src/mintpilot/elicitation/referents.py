@@ -11,6 +11,8 @@ from mintpilot.core.geometry import Vec3
 from mintpilot.core.query import Literal, Saying, SayingKind
 
 LARGER, LEFT, RIGHT, NEAREST, FARTHEST = "larger than", "left of", "right of", "nearest", "farthest"
+NOTHING = ("", "no", "none")
+"""Values that say that something is missing: asking for them would be a negated question."""
 START = "start"
 """Stands for the drone's place in a relation."""
 CLEARLY_LARGER = 1.3
@@ -22,7 +24,7 @@ CLEARLY_NEARER = 1.15
 
 
 def referent_literals(gap: KnowledgeGap, start_m: Vec3 | None) -> tuple[Literal, ...]:
-    """Names, attributes and relations of a target gap's candidates, one literal for each set of values that they pick."""
+    """Names, attributes and relations of a target gap's candidates, as literals."""
     return (*_names(gap), *_attributes(gap), *_relations(gap, start_m))
 
 
@@ -40,6 +42,8 @@ def _attributes(gap: KnowledgeGap) -> Iterator[Literal]:
     having: dict[tuple[str, str], set[str]] = {}
     for candidate in gap.candidates:
         for attribute in candidate.attributes:
+            if attribute.value in NOTHING:
+                continue
             having.setdefault((attribute.name, attribute.value), set()).add(candidate.id)
     for (name, value), values in sorted(having.items()):
         if len(values) < len(gap.values):
@@ -82,7 +86,7 @@ def _larger(gap: KnowledgeGap, reference: Candidate) -> set[str] | None:
 
 
 def _aside(gap: KnowledgeGap, reference: Candidate, start_m: Vec3, sign: float) -> set[str] | None:
-    """Candidates left (+1) or right (-1) of the reference, seen from the start; None where for some it is hard to say."""
+    """Candidates left (+1) or right (-1) of the reference, seen from the start; None where some are hard to tell."""
     aside = set()
     for other in gap.candidates:
         if other is not reference:

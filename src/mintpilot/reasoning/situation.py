@@ -63,7 +63,7 @@ def regret_matrix(mint: Mint, settings: AskingSettings) -> Floats:
 
 
 def _class_succeeds(group: PlanClass, plan: Plan, mint: Mint) -> Bools:
-    """Where a class's plan succeeds. Plans do not name ordered values that they need: of those, its own leaves' count."""
+    """Where a class's plan succeeds. Plans do not name ordered values that they need: its own leaves' count."""
     fine = succeeds(plan, mint.belief)
     ordered = [g for g in mint.belief.gaps if g.kind is GapKind.VALUE]
     for gap in ordered:

@@ -26,7 +26,7 @@ def product(factors: Sequence[Joint], max_joint: int) -> Joint:
     for factor in factors:
         probability = np.multiply.outer(probability, factor.probability)
     order = sorted(range(len(gaps)), key=lambda i: gaps[i].id)
-    return Joint(gaps=tuple(gaps[i] for i in order), probability=np.ascontiguousarray(probability.transpose(order)))
+    return Joint(gaps=tuple(gaps[i] for i in order), probability=probability.transpose(order).copy())
 
 
 def marginalise(joint: Joint, keep: Collection[str]) -> Joint:

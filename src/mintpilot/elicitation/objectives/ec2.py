@@ -26,7 +26,8 @@ class Ec2(QueryObjective):
         error = situation.settings.answer_error
         discount = error / (1 - error)
         yes, no = class_masses(situation)
-        edges = _edges(np.bincount(situation.class_of, weights=situation.probability)[None, :])
+        total: Floats = np.asarray(np.bincount(situation.class_of, weights=situation.probability), float)
+        edges = _edges(total[None, :])
         if edges[0] <= NOTHING:
             return np.zeros(len(yes))
         says_yes = (1 - error) * yes.sum(axis=1) + error * no.sum(axis=1)

@@ -41,7 +41,7 @@ def class_gain_bits(situation: QuerySituation) -> Floats:
     if not len(situation.yes):
         return np.zeros(0)
     yes, no = heard(*class_masses(situation), situation.settings.answer_error)
-    total = np.bincount(situation.class_of, weights=situation.probability)
+    total: Floats = np.asarray(np.bincount(situation.class_of, weights=situation.probability), float)
     joint = plog2p(yes).sum(axis=1) + plog2p(no).sum(axis=1)
     gain = joint - plog2p(yes.sum(axis=1)) - plog2p(no.sum(axis=1)) - plog2p(total).sum()
     bits: Floats = np.clip(gain, 0.0, 1.0)

@@ -16,8 +16,8 @@ _ROUNDING = 1e-12
 class Optimal(QueryObjective):
     """Fewest expected questions until asking may stop (method, section 5), with a memo over posterior supports.
 
-    Asking may stop when one plan class holds ``1 - alpha`` of the mass, when one plan is within ``delta_c_s`` of the best
-    under all that is left, or when no cut splits what is left. Answers count as true: exact for answer error 0 only.
+    Asking may stop when one plan class holds ``1 - alpha`` of the mass, when one plan is within ``delta_c_s`` of the
+    best under all that is left, or when no cut splits what is left. Exact for answer error 0 only.
 
     Args:
         max_states: bound on the posterior supports that are looked at.
@@ -34,8 +34,8 @@ class Optimal(QueryObjective):
         """
         if situation.settings.answer_error > 0:
             raise LimitError(
-                f"objective 'optimal' with answer_error = {situation.settings.answer_error}: it is exact for answers that "
-                "are never wrong; use 'information-gain' or 'ec2'"
+                f"objective 'optimal' with answer_error = {situation.settings.answer_error}: it is exact only for "
+                "answers that are never wrong; use 'information-gain' or 'ec2'"
             )
         return _Programme(situation, self._max_states).scores()
 

@@ -1,0 +1,125 @@
+"""One short yes/no sentence for a cut. Never negated; yes means what the cut says."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+from mintpilot.core.gap import GapKind, KnowledgeGap
+from mintpilot.core.query import Combine, Literal, Query, SayingKind
+from mintpilot.elicitation.phrases import (
+    is_adjective,
+    joined,
+    noun_of,
+    plain,
+    plural,
+    relation_phrase,
+    shortened,
+    subject_of,
+    thing_called,
+)
+
+MAX_WORDS = 20
+"""A question has no more words than this."""
+
+
+def sentence(query: Query, gaps: Mapping[str, KnowledgeGap], attempt: int = 1) -> str:
+    """The cut as a question; a second attempt uses other words, a third the first ones again.
+
+    Descriptions are shortened only where the sentence would pass `MAX_WORDS`.
+    """
+    for name in (subject_of, lambda gap: shortened(subject_of(gap))):
+        text = _sentence(query, gaps, attempt, name)
+        if len(text.split()) <= MAX_WORDS:
+            return text
+    words = text.rstrip("?").split()
+    return f"{' '.join(words[:MAX_WORDS])}?"
+
+
+def is_sayable(query: Query, gaps: Mapping[str, KnowledgeGap]) -> bool:
+    """Whether the cut fits into `MAX_WORDS` words with everything called by its full description."""
+    return all(len(_sentence(query, gaps, attempt, subject_of).split()) <= MAX_WORDS for attempt in (1, 2))
+
+
+def _sentence(query: Query, gaps: Mapping[str, KnowledgeGap], attempt: int, name: Callable[[KnowledgeGap], str]) -> str:
+    first = attempt % 2 == 1
+    subjects = [name(gaps[x.gap]) for x in query.literals]
+    kinds = {gaps[x.gap].kind for x in query.literals}
+    if kinds == {GapKind.OBSTACLE}:
+        return _obstacles(subjects, query.combine, first)
+    if kinds == {GapKind.PRESENCE}:
+        return _rooms(subjects, query.combine, first)
+    if kinds == {GapKind.TARGET} and len(query.gap_ids) == 1:
+        return _referent(query, gaps[query.gap_ids[0]], first)
+    if kinds == {GapKind.VALUE} and len(query.literals) == 1:
+        value = query.literals[0].saying.value
+        return f"Is {subjects[0]} {value} or more?" if first else f"Is {subjects[0]} at least {value}?"
+    word = "and" if query.combine is Combine.ALL else "or"
+    facts = joined([_fact(x, gaps[x.gap], name) for x in query.literals], word)
+    return f"Is it true that {facts}?" if first else f"Is this right: {facts}?"
+
+
+def _obstacles(subjects: list[str], combine: Combine, first: bool) -> str:
+    if len(subjects) == 1:
+        s = subjects[0]
+        return f"Is {s} safe to fly through?" if first else f"Can the drone fly through {s} without danger?"
+    if combine is Combine.ANY:
+        either = joined(subjects, "or")
+        return f"Is it safe to fly through {either}?" if first else f"Can the drone fly safely through {either}?"
+    both = "both" if len(subjects) == 2 else "all"
+    every = joined(subjects, "and")
+    return f"Are {every} {both} safe to fly through?" if first else f"Can the drone fly safely through {both} {every}?"
+
+
+def _rooms(subjects: list[str], combine: Combine, first: bool) -> str:
+    if combine is Combine.ALL and len(subjects) > 1:
+        every = joined(subjects, "and")
+        return f"Are there people inside {every}, each of them?" if first else f"Is there a person in each: {every}?"
+    either = joined(subjects, "or")
+    return f"Is somebody inside {either}?" if first else f"Is there a person in {either}?"
+
+
+def _referent(query: Query, gap: KnowledgeGap, first: bool) -> str:
+    kinds = {x.saying.kind for x in query.literals}
+    word = "and" if query.combine is Combine.ALL else "or"
+    if kinds == {SayingKind.VALUE}:
+        things = joined([thing_called(gap, x.saying.value) for x in query.literals], word)
+        return f"Is it {things}?" if first else f"Do you mean {things}?"
+    if kinds == {SayingKind.RELATION} and len(query.literals) == 1:
+        saying = query.literals[0].saying
+        relation = relation_phrase(saying.name, saying.value, gap)
+        return f"Is it {relation}?" if first else f"Is the one that you mean {relation}?"
+    if kinds == {SayingKind.ATTRIBUTE}:
+        return _attributes(query, gap, word, first)
+    facts = joined([_fact(x, gap, subject_of) for x in query.literals], word)
+    return f"Is it true that {facts}?" if first else f"Is this right: {facts}?"
+
+
+def _attributes(query: Query, gap: KnowledgeGap, word: str, first: bool) -> str:
+    sayings = [x.saying for x in query.literals]
+    values = [plain(s.value) for s in sayings]
+    if all(is_adjective(s.name) for s in sayings):
+        if len(sayings) == 1:
+            noun = noun_of(gap)
+            return f"Is it one of the {values[0]} {plural(noun)}?" if first else f"Is the {noun} you mean {values[0]}?"
+        both = "both " if word == "and" and len(sayings) == 2 else ""
+        return f"Is it {both}{joined(values, word)}?" if first else f"Is the one you mean {both}{joined(values, word)}?"
+    if len({s.name for s in sayings}) == 1:
+        facts = f"{plain(sayings[0].name)} {joined(values, word)}"
+    else:
+        facts = joined([f"{plain(s.name)} {v}" for s, v in zip(sayings, values, strict=True)], word)
+    return f"Does it have {facts}?" if first else f"Does the one that you mean have {facts}?"
+
+
+def _fact(literal: Literal, gap: KnowledgeGap, name: Callable[[KnowledgeGap], str]) -> str:
+    saying = literal.saying
+    if gap.kind is GapKind.OBSTACLE:
+        return f"{name(gap)} is safe"
+    if gap.kind is GapKind.PRESENCE:
+        return f"somebody is inside {name(gap)}"
+    if saying.kind is SayingKind.THRESHOLD:
+        return f"{name(gap)} is {saying.value} or more"
+    if saying.kind is SayingKind.VALUE:
+        return f"it is {thing_called(gap, saying.value)}"
+    if saying.kind is SayingKind.ATTRIBUTE:
+        return f"its {plain(saying.name)} is {plain(saying.value)}"
+    return f"it is {relation_phrase(saying.name, saying.value, gap)}"

@@ -1,0 +1,101 @@
+"""From a cut to a question with words and consequences. Words never decide meaning (method, section 4)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from mintpilot.core.gap import PASSABLE, GapKind, KnowledgeGap
+from mintpilot.core.geometry import Bools
+from mintpilot.core.plan import Plan
+from mintpilot.core.query import Query, Question
+from mintpilot.core.tree import Mint
+from mintpilot.elicitation.phrases import joined, subject_of, thing_called
+from mintpilot.elicitation.sentences import sentence
+
+
+def word_question(query: Query, gaps: Sequence[KnowledgeGap], mint: Mint | None, *, attempt: int = 1) -> Question:
+    """The question for a cut, by template: at most 20 words, never negated, with what Yes and No do to the flight.
+
+    Args:
+        query: the cut.
+        gaps: at least the gaps that it speaks of.
+        mint: the tree that it was chosen on, for the consequences; None gives general ones.
+        attempt: from 2 on the same cut is put in other words.
+
+    Raises:
+        KeyError: a gap of the query is not among ``gaps``.
+    """
+    known = {g.id: g for g in gaps}
+    about = tuple(known[name] for name in query.gap_ids)
+    yes, no = _consequences(query, about, mint)
+    return Question(
+        query=query,
+        text=sentence(query, known, attempt),
+        yes_means=yes,
+        no_means=no,
+        gaps=about,
+        attempt=attempt,
+    )
+
+
+def _consequences(query: Query, about: tuple[KnowledgeGap, ...], mint: Mint | None) -> tuple[str, str]:
+    """What follows from Yes and from No for the flight, the likeliest plan each way."""
+    if mint is None or not set(query.gap_ids) <= {g.id for g in mint.belief.gaps}:
+        return _general(about, True), _general(about, False)
+    truth = query.truths(mint.belief)
+    sides = [_likeliest(mint, agrees) for agrees in (truth, ~truth)]
+    texts = []
+    for mine, other in (sides, sides[::-1]):
+        plan, sure = mine
+        text = _flight(plan, sure, about)
+        longer = plan.cost_s - other[0].cost_s if plan is not None and other[0] is not None else 0.0
+        texts.append(f"{text}, {longer:.0f} s longer" if sure and other[1] and longer >= 1 else text)
+    return texts[0], texts[1]
+
+
+def _likeliest(mint: Mint, agrees: Bools) -> tuple[Plan | None, bool]:
+    """The plan that an answer makes likeliest, and whether no other plan is left then."""
+    held = np.where(agrees & (mint.class_of >= 0), mint.belief.probability, 0.0)
+    mass = np.bincount(np.maximum(mint.class_of, 0).ravel(), weights=held.ravel(), minlength=len(mint.classes))
+    best = int(np.argmax(mass))
+    return mint.classes[best].plan, bool(np.count_nonzero(mass) <= 1)
+
+
+def _flight(plan: Plan | None, sure: bool, about: tuple[KnowledgeGap, ...]) -> str:
+    if plan is None:
+        return "I find no safe way" if sure else "I may find no safe way"
+    i = "I" if sure else "I probably"
+    kinds = {g.kind for g in about}
+    if kinds == {GapKind.OBSTACLE}:
+        entered = [g for g in about if g.id in plan.enters]
+        if not entered:
+            return f"{i} fly around {'it' if len(about) == 1 else 'them'}"
+        return f"{i} fly through {'it' if len(about) == 1 else joined([subject_of(g) for g in entered], 'and')}"
+    if kinds == {GapKind.PRESENCE}:
+        visited = [g for g in about if g.id not in plan.skips]
+        if not visited:
+            return f"{i} fly past it" if len(about) == 1 else f"{i} fly past them"
+        if len(about) == 1:
+            return f"{i} look inside"
+        return f"{i} look into {joined([subject_of(g) for g in visited], 'and')}"
+    bound = dict(plan.binds)
+    if len(about) == 1 and about[0].id in bound:
+        if not sure:
+            return "I ask further which one it is"
+        return f"I fly to {thing_called(about[0], bound[about[0].id])}"
+    return f"{i} fly for {plan.cost_s:.0f} s"
+
+
+def _general(about: tuple[KnowledgeGap, ...], yes: bool) -> str:
+    """Consequences where no tree tells them."""
+    it = "it" if len(about) == 1 else "them"
+    kinds = {g.kind for g in about}
+    if kinds == {GapKind.OBSTACLE} and all(PASSABLE in g.values for g in about):
+        return f"I may fly through {it}" if yes else f"I fly around {it}"
+    if kinds == {GapKind.PRESENCE}:
+        return "I look inside" if yes else f"I fly past {it}"
+    if kinds == {GapKind.TARGET}:
+        return "I take it that you mean that" if yes else "I take it that you mean another"
+    return "I plan with this" if yes else "I plan with the opposite"

@@ -1,0 +1,138 @@
+"""For every gap: asked or not, and why, in figures."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator
+
+import numpy as np
+
+from mintpilot.core.gap import Assumptions, Belief, GapKind, KnowledgeGap
+from mintpilot.core.geometry import Floats
+from mintpilot.core.mission import AskingSettings, CriticalityRule
+from mintpilot.core.plan import Plan
+from mintpilot.core.ports import ImpactMetric, PlanSpace
+from mintpilot.core.tree import GapAccount, Mint, Node
+from mintpilot.reasoning.classes import class_entropy_bits
+from mintpilot.reasoning.entropy import entropy_bits
+from mintpilot.reasoning.metrics import expected_regret_s
+from mintpilot.reasoning.situation import regret_matrix
+from mintpilot.reasoning.tree import TOLERANCE
+
+
+def gap_accounts(
+    space: PlanSpace,
+    belief: Belief,
+    mint: Mint,
+    settings: AskingSettings,
+    metric: ImpactMetric,
+    *,
+    asked: Collection[str] = (),
+) -> tuple[GapAccount, ...]:
+    """The account of every gap of the belief, by id.
+
+    Costs compare the best plans under the gap's best and worst value, all else as at the likeliest node of the tree
+    that branches on it (at the root for gaps that no node branches on).
+
+    Args:
+        space: the plans of the problem of the first deliberation.
+        belief: of the first deliberation.
+        mint: its tree.
+        settings: thresholds.
+        metric: distance between paths.
+        asked: ids of gaps that were asked about at any time.
+    """
+    regret = regret_matrix(mint, settings)
+    made = []
+    for gap in belief.gaps:
+        node = _branching_node(mint.root, gap.id)
+        best, worst = _extremes(space, (node or mint.root).given, gap)
+        divergence = metric.divergence(best.path_m, worst.path_m) if best and worst else None
+        gain, saved = _worth(mint, regret, gap.id)
+        bits = entropy_bits(belief.marginal(gap.id))
+        made.append(
+            GapAccount(
+                gap_id=gap.id,
+                description=gap.description,
+                kind=gap.kind.value,
+                asked=gap.id in asked,
+                relevant=node is not None,
+                why=_why(gap, node is not None, gap.id in asked, best, worst, divergence, bits, settings),
+                cost_if_favourable_s=best.cost_s if best else None,
+                cost_if_unfavourable_s=worst.cost_s if worst else None,
+                divergence_m=divergence,
+                entropy_bits=bits,
+                gain_bits=gain,
+                regret_saved_s=saved,
+            )
+        )
+    return tuple(made)
+
+
+def _branching_node(root: Node, gap_id: str) -> Node | None:
+    """The likeliest node that branches on that gap; the first one among equals."""
+    found = [n for n in _nodes(root) if n.branch_on == gap_id]
+    return max(found, key=lambda n: round(n.probability, 9), default=None)
+
+
+def _nodes(node: Node) -> Iterator[Node]:
+    yield node
+    for child in node.children:
+        yield from _nodes(child)
+
+
+def _extremes(space: PlanSpace, given: Assumptions, gap: KnowledgeGap) -> tuple[Plan | None, Plan | None]:
+    """The plans under the gap's best and worst possible value; None where that value leaves nothing to fly."""
+    plans = [space.optimistic(given.assume(gap.id, (value,))) for value in given.possible(gap)]
+    found = sorted((p for p in plans if p is not None), key=lambda p: (p.cost_s, p.signature))
+    if not found:
+        return None, None
+    return found[0], found[-1] if len(found) == len(plans) else None
+
+
+def _worth(mint: Mint, regret_s: Floats, gap_id: str) -> tuple[float, float]:
+    """Bits that the best cut 'gap = value' tells of the plan class, and seconds of regret that the value saves."""
+    if all(g.id != gap_id for g in mint.belief.gaps):
+        return 0.0, 0.0
+    axis, support = mint.belief.axis(gap_id), mint.support
+    value = np.indices(mint.belief.probability.shape)[axis].ravel()[support]
+    p = mint.belief.probability.ravel()[support]
+    class_of = mint.class_of.ravel()[support]
+    gain = after = 0.0
+    for v in np.unique(value):
+        mass = np.where(value == v, p, 0.0)
+        after += expected_regret_s(regret_s, mass)
+        left = sum(part.sum() * entropy_bits(np.bincount(class_of, weights=part)) for part in (mass, p - mass))
+        gain = max(gain, class_entropy_bits(mint) - float(left))
+    return gain, max(0.0, expected_regret_s(regret_s, p) - after)
+
+
+def _why(
+    gap: KnowledgeGap,
+    relevant: bool,
+    asked: bool,
+    best: Plan | None,
+    worst: Plan | None,
+    divergence_m: float | None,
+    bits: float,
+    settings: AskingSettings,
+) -> str:
+    if best is None:
+        return "Nothing can be flown, whatever it is."
+    if worst is None:
+        figures = f"the best plan takes {best.cost_s:.1f} s one way, and there is none the other way"
+    else:
+        extra = worst.cost_s - best.cost_s
+        apart = "" if divergence_m is None else f", {divergence_m:.1f} m apart"
+        figures = f"the best plan takes {best.cost_s:.1f} s or {worst.cost_s:.1f} s ({extra:.1f} s more{apart})"
+    if gap.kind is GapKind.TARGET:
+        figures += f"; {bits:.2f} bits are not known"
+    if asked:
+        return f"Asked: {figures}."
+    if relevant:
+        return f"Not asked: {figures}, but other answers settled the plan."
+    if worst is None or worst.cost_s - best.cost_s <= settings.delta_c_s + TOLERANCE:
+        limits = f"{settings.delta_c_s:.1f} s"
+        if settings.rule is CriticalityRule.PAPER:
+            limits += f" and {settings.delta_d_m:.1f} m"
+        return f"Not asked: {figures}; differences up to {limits} are not worth a question."
+    return f"Not asked: {figures}, but it is as good as known."

@@ -1,0 +1,79 @@
+"""Likely is not known: a region is entered only after an explicit yes (method, section 6)."""
+
+from __future__ import annotations
+
+import math
+
+from mintpilot.core.gap import PASSABLE, KnowledgeGap
+from mintpilot.core.plan import Plan
+from mintpilot.core.ports import Ask, Decision, Situation
+from mintpilot.core.query import Literal, Query, Saying, SayingKind
+from mintpilot.core.tree import Mint, ScoredQuery, StopReason
+from mintpilot.reasoning.safety import unknown_regions
+from mintpilot.reasoning.tree import TOLERANCE
+from mintpilot.strategies.flying import cautious_plan, fly, questions_left
+
+MAX_CONFIRMATIONS = 50
+"""Bound on the answers that are counted on in a row."""
+
+
+def confirm_or_avoid(situation: Situation, mint: Mint, plan: Plan, reason: StopReason) -> Decision:
+    """Flies the plan if it enters no region of doubtful passability; else asks about one, or keeps out of all of them.
+
+    Asking is preferred while questions are left and the seconds that it saves on average pass its price.
+    """
+    settings, belief = situation.settings, situation.belief
+    doubtful = unknown_regions(plan, belief, situation.confirmed, settings)
+    if not doubtful:
+        return fly(situation, mint, plan, reason)
+    around = cautious_plan(situation)
+    saving_s = (around.cost_s if around else settings.failure_price_s) - plan.cost_s
+    if around is not None and saving_s <= settings.delta_c_s + TOLERANCE:
+        return fly(situation, mint, around, StopReason.GOOD_FOR_ALL)
+    needed = {g: confirmations(belief.probability_of(g, PASSABLE), situation) for g in doubtful}
+    total = sum(needed.values())
+    chance = math.prod(belief.probability_of(g, PASSABLE) for g in doubtful)
+    worth_s = chance * saving_s - settings.question_price_s * total
+    queries = [passable_query(gap) for gap in belief.gaps if gap.id in doubtful]
+    if any(not _may_ask(query, situation) for query in queries) or worth_s <= TOLERANCE:
+        return fly(situation, mint, around, StopReason.SILENCE if situation.silent else StopReason.NO_GAIN)
+    if questions_left(situation) < total:
+        return fly(situation, mint, around, StopReason.SILENCE if situation.silent else StopReason.BUDGET)
+    # The likeliest to be refused goes first: a no there makes the other questions needless.
+    query = min(queries, key=lambda q: (belief.probability_of(q.gap_ids[0], PASSABLE), q.id))
+    yes = belief.probability_of(query.gap_ids[0], PASSABLE)
+    error = settings.answer_error
+    scored = ScoredQuery(
+        query=query,
+        score=worth_s,
+        gain_bits=0.0,
+        regret_saved_s=chance * saving_s,
+        yes_probability=(1 - error) * yes + error * (1 - yes),
+    )
+    return Ask(scored=scored, mint=mint)
+
+
+def passable_query(gap: KnowledgeGap) -> Query:
+    """The cut that asks for an explicit yes for one region."""
+    saying = Saying(kind=SayingKind.VALUE, value=PASSABLE)
+    return Query(literals=(Literal(gap=gap.id, values=frozenset({PASSABLE}), saying=saying),))
+
+
+def confirmations(passable: float, situation: Situation) -> int:
+    """How many answers of yes in a row make a region known; at least 1 where none was given yet."""
+    settings = situation.settings
+    doubt = settings.alpha_safe if settings.answer_error > 0 else 0.0
+    count = 1
+    while count < MAX_CONFIRMATIONS:
+        right = (1 - settings.answer_error) ** count * passable
+        wrong = settings.answer_error**count * (1 - passable)
+        if wrong <= doubt * (right + wrong):
+            break
+        count += 1
+    return count
+
+
+def _may_ask(query: Query, situation: Situation) -> bool:
+    """A cut that was given up is not asked again, nor one that was answered by somebody who is never wrong."""
+    answered = {asked.id for asked, _ in situation.asked}
+    return query.id not in situation.withdrawn and (situation.settings.answer_error > 0 or query.id not in answered)

@@ -1,0 +1,109 @@
+"""MINT: ask only what changes the plan, in the order that tells most (method, sections 3 to 6)."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from mintpilot.core.mission import CriticalityRule
+from mintpilot.core.plan import Plan
+from mintpilot.core.ports import Ask, Decision, QueryObjective, Situation, Strategy
+from mintpilot.core.tree import LeafReason, Mint, ScoredQuery, StopReason
+from mintpilot.elicitation.candidates import candidate_queries
+from mintpilot.elicitation.choose import choose
+from mintpilot.reasoning.situation import regret_matrix
+from mintpilot.reasoning.tree import TOLERANCE
+from mintpilot.strategies.confirming import confirm_or_avoid
+from mintpilot.strategies.flying import (
+    best_safe_plan,
+    fly,
+    fly_cautiously,
+    may_be_flown,
+    questions_left,
+    tree_of,
+)
+
+ALTERNATIVES = 5
+"""How many of the other cuts are told with the chosen one."""
+
+
+class MintStrategy(Strategy):
+    """The method of the paper, made exact by the specification.
+
+    Args:
+        objective: judges cuts instead of the situation's objective, e.g. a random one.
+    """
+
+    def __init__(self, objective: QueryObjective | None = None) -> None:
+        self._objective = objective
+
+    def decide(self, situation: Situation) -> Decision:
+        """Asks the best cut, or flies; the stop reasons are those of method section 5, in this order.
+
+        1. One plan class is left or holds enough of the mass, or one plan is good for all: fly it. If it enters a
+           region that is not known to be passable, ask about that one or avoid it, whichever is cheaper on average.
+        2. The operator is silent: fly the cautious plan.
+        3. The budget is spent, or no cut is worth asking: fly the safe plan that loses least on average.
+        """
+        mint = tree_of(situation)
+        if mint.root.leaf is LeafReason.INFEASIBLE:
+            return fly(situation, mint, None, StopReason.INFEASIBLE)
+        settled = _settled(situation, mint)
+        if settled is not None:
+            return confirm_or_avoid(situation, mint, *settled)
+        if situation.silent:
+            return fly_cautiously(situation, mint, StopReason.SILENCE)
+        ranked = self._rank(situation, mint)
+        gain = max((s.gain_bits for s in ranked), default=0.0)
+        if not questions_left(situation):
+            plan = best_safe_plan(situation, mint)
+            return fly(situation, mint, plan, StopReason.BUDGET, best_gain_bits=gain)
+        if not ranked or ranked[0].score <= 0:
+            plan = best_safe_plan(situation, mint)
+            return fly(situation, mint, plan, StopReason.NO_GAIN, best_gain_bits=gain)
+        return Ask(scored=ranked[0], alternatives=ranked[1 : 1 + ALTERNATIVES], mint=mint)
+
+    def _rank(self, situation: Situation, mint: Mint) -> tuple[ScoredQuery, ...]:
+        queries = candidate_queries(mint, start_m=situation.problem.start_m, refused=situation.withdrawn)
+        return choose(
+            queries,
+            mint,
+            regret_matrix(mint, situation.settings),
+            self._objective or situation.objective,
+            situation.settings,
+            asked={query.id for query, _ in situation.asked},
+        )
+
+
+def _settled(situation: Situation, mint: Mint) -> tuple[Plan, StopReason] | None:
+    """The plan that further answers would not change beyond the tolerances, and why; None while they might."""
+    root, top = mint.root, mint.classes[0]
+    if root.leaf is LeafReason.RELIES_ON_NOTHING and root.plan is not None:
+        return root.plan, StopReason.ONE_CLASS if situation.asked else StopReason.NO_GAPS
+    if root.leaf is LeafReason.CAUTIOUS_IS_GOOD_ENOUGH and root.plan is not None:
+        return root.plan, StopReason.GOOD_FOR_ALL
+    if top.plan is not None and (
+        root.leaf is LeafReason.TARGET_IS_CLEAR_ENOUGH or top.probability >= 1 - situation.settings.alpha - TOLERANCE
+    ):
+        return top.plan, StopReason.ONE_CLASS
+    plan = _good_for_all(situation, mint)
+    return (plan, StopReason.GOOD_FOR_ALL) if plan is not None else None
+
+
+def _good_for_all(situation: Situation, mint: Mint) -> Plan | None:
+    """The cheapest plan within delta_c of the best under all that is left (paper's rule: and within delta_d)."""
+    settings = situation.settings
+    worst = regret_matrix(mint, settings).max(axis=1, initial=0.0)
+    good = [mint.classes[i].plan for i in np.flatnonzero(worst <= settings.delta_c_s + TOLERANCE)]
+    plans = sorted((p for p in good if p is not None), key=lambda p: (p.cost_s, p.signature))
+    for plan in plans:
+        near = settings.rule is CriticalityRule.REGRET or _near_all(situation, mint, plan)
+        if near and may_be_flown(situation, plan):
+            return plan
+    return None
+
+
+def _near_all(situation: Situation, mint: Mint, plan: Plan) -> bool:
+    """Whether the plan's path is within delta_d of that of every class that is left."""
+    others = [c.plan.path_m for c in mint.classes if c.plan is not None and c.plan is not plan]
+    apart = (situation.metric.divergence(plan.path_m, path) for path in others)
+    return all(d <= situation.settings.delta_d_m + TOLERANCE for d in apart)
