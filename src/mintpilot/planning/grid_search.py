@@ -52,10 +52,11 @@ class GridSearch:
 
     Args:
         free: flags (nz, ny, nx); ``nz == 1`` makes a flat, 8-connected grid.
+        cut_corners: lets diagonal moves pass blocked cells, as searches do that know no better. Never fly such a path.
     """
 
-    def __init__(self, free: Bools) -> None:
-        self.lattice: Lattice = lattice_of(free)
+    def __init__(self, free: Bools, *, cut_corners: bool = False) -> None:
+        self.lattice: Lattice = lattice_of(free, cut_corners=cut_corners)
         self.work = Workspace(self.lattice.size)
         self.expanded = 0
         """Nodes that the last search expanded."""

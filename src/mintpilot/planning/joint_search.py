@@ -87,6 +87,10 @@ class JointSearch:
             not_expanded=result.not_expanded,
         )
 
+    def forget(self) -> None:
+        """Forgets what was prepared for the regions (for measuring)."""
+        self._overlays.clear()
+
     def under(self, start: ArrayLike, goal: ArrayLike, blocked: int) -> tuple[float, Ints] | None:
         """One plain search with the regions of that bit set blocked, as `GridSearch.shortest_path`."""
         lattice = self.grid.lattice

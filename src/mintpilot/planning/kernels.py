@@ -167,7 +167,7 @@ def astar(
             cost = g + length[k]
             if cells[to].tag == tag and cost >= cells[to].g - 1e-12:
                 continue
-            if guide is None:  # noqa: SIM108
+            if guide is None:
                 f = cost + octile(x + step[k, 2] - gx, y + step[k, 1] - gy, z + step[k, 0] - gz)
             else:
                 f = cost + guide[to]

@@ -79,17 +79,23 @@ class Lattice:
         return float(kinds[1]) + float(kinds[2]) * 2**0.5 + float(kinds[3]) * 3**0.5
 
 
-def lattice_of(free: Bools) -> Lattice:
+def lattice_of(free: Bools, *, cut_corners: bool = False) -> Lattice:
     """The graph of a grid.
 
     Args:
         free: flags (nz, ny, nx); ``nz == 1`` makes a flat, 8-connected graph.
+        cut_corners: moves need only their target to be free (for comparisons with other searches).
+
+    Raises:
+        MapError: the grid is empty or not three-dimensional.
     """
     if free.ndim != 3 or free.size == 0:
         raise MapError(f"grid of shape {free.shape}: give flags of shape (nz, ny, nx), none of them 0")
     shape = (free.shape[0], free.shape[1], free.shape[2])
     flat = shape[0] == 1
     moves = MOVES_2D if flat else MOVES_3D
+    if cut_corners:
+        moves = moves.cutting_corners()
     padded = np.pad(np.asarray(free, np.uint8), ((0, 0) if flat else (1, 1), (1, 1), (1, 1)))
     _, ny, nx = padded.shape
     layers = (0,) if flat else (-1, 0, 1)

@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,6 +38,12 @@ class Moves:
     """(n,) bits of the neighbourhood's nodes that must be free: the block swept by the move."""
     natural: NDArray[np.uint32]
     """(32,) moves that are needed after each move in free space; all after `NO_MOVE`."""
+
+    def cutting_corners(self) -> Moves:
+        """The same moves, needing only their target."""
+        middle = (len(self.step) + 1) // 2
+        targets = [k if k < middle else k + 1 for k in range(len(self.step))]
+        return replace(self, needs=np.array([1 << t for t in targets], np.uint32))
 
 
 def _moves(layers: tuple[int, ...]) -> Moves:
