@@ -84,14 +84,12 @@ class AskingSettings:
 class SurveySettings:
     """The flight that makes the map, before anything is decided."""
 
-    height_m: float = 3.25
-    """Above ground, metres: above the racks, below the roof."""
     spacing_m: float = 4.0
-    """Between neighbouring lanes, metres."""
-    frame_every_s: float = 0.5
-    """Time between pictures, seconds."""
+    """Between places to look around from, about, metres."""
     speed_mps: float = 2.0
-    """Along the lanes."""
+    """Between those places."""
+    longest_s: float = 240.0
+    """No new place is flown to after this time, seconds."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

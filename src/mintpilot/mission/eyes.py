@@ -6,7 +6,7 @@ import time
 from typing import Protocol
 
 from mintpilot.core.events import FrameSeen, Timed
-from mintpilot.core.geometry import Floats, Vec3
+from mintpilot.core.geometry import Floats
 from mintpilot.core.ports import Camera, Perception, Recorder
 from mintpilot.core.semantic_map import SemanticMap
 from mintpilot.mapping.builder import MapBuilder
@@ -75,23 +75,3 @@ class FixedEyes:
 
     def flown(self, points_m: Floats, radius_m: float) -> None:
         """See `Eyes.flown`; a given map learns nothing from it."""
-
-
-def stations(volume_lo: Vec3, volume_hi: Vec3, *, height_m: float, spacing_m: float) -> list[Vec3]:
-    """Places to look around from: a lattice over the volume at one height, walked in serpentines.
-
-    Args:
-        volume_lo: lowest corner of the volume, metres.
-        volume_hi: highest corner, metres.
-        height_m: height of the stations above the volume's floor, metres.
-        spacing_m: wished distance between neighbours, metres; the lattice is stretched to fill the volume evenly.
-    """
-    counts = [max(1, round((volume_hi[i] - volume_lo[i]) / spacing_m)) for i in (0, 1)]
-    steps = [(volume_hi[i] - volume_lo[i]) / counts[i] for i in (0, 1)]
-    xs = [volume_lo[0] + (i + 0.5) * steps[0] for i in range(counts[0])]
-    ys = [volume_lo[1] + (j + 0.5) * steps[1] for j in range(counts[1])]
-    z = volume_lo[2] + height_m
-    places: list[Vec3] = []
-    for row, y in enumerate(ys):
-        places += [(x, y, z) for x in (xs if row % 2 == 0 else reversed(xs))]
-    return places

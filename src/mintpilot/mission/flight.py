@@ -10,13 +10,14 @@ import numpy as np
 
 from mintpilot.core.errors import InfeasibleError
 from mintpilot.core.events import LegFlown, MapUpdated, Noticed, Timed
-from mintpilot.core.geometry import Floats, Vec3
+from mintpilot.core.geometry import Floats
 from mintpilot.core.plan import Leg, Plan, VehicleLimits
 from mintpilot.core.ports import Recorder, Vehicle, Watch
 from mintpilot.core.semantic_map import Knowledge, SemanticMap
 from mintpilot.core.task import Action
 from mintpilot.core.trajectory import FlightEnd, Trajectory, VehicleState
 from mintpilot.mission.eyes import Eyes
+from mintpilot.mission.lookout import Lookout
 from mintpilot.planning.checks import check_path, check_trajectory
 from mintpilot.planning.trajectory import plan_trajectory
 
@@ -119,15 +120,14 @@ class Pilot:
     def _watch(self, rest: list[Floats], pretend_passable: frozenset[str]) -> Watch:
         """Looks at the world in flight; asks for a stop when the way ahead is lost or something new is uncertain."""
         known = frozenset(uncertain_things(self.map))
-        way = np.vstack(rest)
+        lookout = Lookout(np.vstack(rest), self.limits)
 
         def watch(state: VehicleState) -> bool:
             self.map = self.eyes.look(self.map)
             new = [words for name, words in uncertain_things(self.map).items() if name not in known]
-            ahead = _ahead(way, state.position_m)
-            lost = check_path(ahead, _pretend(self.map, pretend_passable), self.limits) if len(ahead) else ""
-            if lost:
-                self._news = f"the way ahead is not known to be free any more: {lost}"
+            trouble = lookout.trouble(state.position_m, _pretend(self.map, pretend_passable))
+            if trouble:
+                self._news = f"the way ahead is not known to be free any more: {trouble}"
             elif new:
                 self._news = f"something new and uncertain: {new[0]}"
             else:
@@ -148,13 +148,6 @@ def _pretend(believed: SemanticMap, passable: frozenset[str]) -> SemanticMap:
     for region in passable:
         believed = believed.with_region(region, Knowledge.YES)
     return believed
-
-
-def _ahead(way: Floats, position_m: Vec3) -> Floats:
-    """The part of the way that is still to come: from the nearest way-point on."""
-    distances = np.linalg.norm(way - np.asarray(position_m), axis=1)
-    nearest = int(np.argmin(distances))
-    return way[nearest + 1 :]
 
 
 def _room_of(leg: Leg) -> str:

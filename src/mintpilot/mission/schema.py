@@ -84,14 +84,12 @@ class AskingSpec(Spec):
 class SurveySpec(Spec):
     """The flight that makes the map, for worlds that have none yet."""
 
-    height_m: Positive = 3.25
-    """Above ground, metres: above the racks, below the roof."""
     spacing_m: Positive = 4.0
-    """Between neighbouring lanes, metres."""
-    frame_every_s: Positive = 0.5
-    """Time between pictures, seconds."""
+    """Between places to look around from, about, metres."""
     speed_mps: Positive = 2.0
-    """Along the lanes, metres per second."""
+    """Between those places, metres per second."""
+    longest_s: Positive = 240.0
+    """No new place is flown to after this time, seconds."""
     resolution_m: Positive = 0.2
     """Edge of a voxel of the map that is made, metres."""
 

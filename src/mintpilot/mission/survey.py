@@ -13,33 +13,37 @@ from mintpilot.core.mission import Mission, SurveySettings
 from mintpilot.core.plan import VehicleLimits
 from mintpilot.core.ports import Recorder, Vehicle
 from mintpilot.core.semantic_map import SemanticMap
-from mintpilot.core.trajectory import FlightEnd, Trajectory
-from mintpilot.mission.eyes import CameraEyes, stations
-from mintpilot.planning.checks import check_path, check_trajectory
-from mintpilot.planning.reach import nearest_reachable
+from mintpilot.core.trajectory import FlightEnd, Trajectory, VehicleState
+from mintpilot.mission.eyes import CameraEyes
+from mintpilot.mission.lookout import Lookout
+from mintpilot.planning.checks import check_trajectory
+from mintpilot.planning.reach import LookAround, next_view, way_to
 from mintpilot.planning.trajectory import plan_trajectory
 
-TURN_RATE_RADPS = 1.2
+TURN_RATE_RADPS = 1.6
 """How fast the drone turns on the spot while it looks around."""
 SWEEP_RAD = 2 * math.pi
-"""A full turn at each station."""
-WORTH_M = 0.6
-"""A hop shorter than this brings the drone no nearer to a station."""
+"""A full turn at each place."""
+TAKE_OFF_CLEAR_M = 1.0
+"""Whoever puts the drone down vouches for this much free space around its hover point: cameras see nothing right above
+or below."""
+ARRIVED_M = 0.6
+"""Nearer than this is there."""
 MAX_HOPS = 6
-"""Hops towards one station before it is given up."""
+"""Attempts to come home when news keep stopping the drone."""
 
 
 def survey(
     mission: Mission, settings: SurveySettings, *, vehicle: Vehicle, eyes: CameraEyes, recorder: Recorder
 ) -> SemanticMap:
-    """Looks around from a lattice of stations, as far as known free space leads to them, and comes back.
+    """Looks around from one place after the other, as far as known free space leads, and comes back.
 
-    Every hop ends at the known-flyable place nearest to the next station, so the drone never flies where it has not
-    seen free space, and keeps out of every region whose passability is open.
+    The next place is where much that is unknown lies around, and that is not far. The drone never flies where it has
+    not seen free space, and keeps out of every region whose passability is open.
 
     Args:
         mission: where to fly and with what vehicle.
-        settings: height, spacing and speed of the survey.
+        settings: speed, and bounds of the effort.
         vehicle: hovering at the mission's start.
         eyes: what turns pictures into the map.
         recorder: told about every flight.
@@ -52,12 +56,9 @@ def survey(
     """
     surveyor = _Surveyor(mission, settings, vehicle, eyes, recorder)
     surveyor.sweep()
-    lo, hi = mission.volume.lo_m, mission.volume.hi_m
-    for station in stations(lo, hi, height_m=settings.height_m, spacing_m=settings.spacing_m):
-        if not surveyor.go_towards(station):
-            return surveyor.map
+    while surveyor.has_time() and surveyor.go_on():
         surveyor.sweep()
-    surveyor.go_towards(mission.start_m)
+    surveyor.go_to(mission.start_m)
     recorder.record(MapUpdated(map=surveyor.map, why="survey"))
     return surveyor.map
 
@@ -71,32 +72,47 @@ class _Surveyor:
         self._vehicle = vehicle
         self._eyes = eyes
         self._recorder = recorder
-        start = np.asarray([mission.start_m], float)
-        eyes.flown(start, self._limits.radius_m + self._limits.margin_m)
+        self._begun_s = vehicle.state().time_s
+        self._seen_from: list[Vec3] = []
+        eyes.flown(np.asarray([mission.start_m], float), TAKE_OFF_CLEAR_M)
         self.map = eyes.look(None)
+
+    def has_time(self) -> bool:
+        """Whether the survey may go on."""
+        return self._vehicle.state().time_s - self._begun_s < self._settings.longest_s
 
     def sweep(self) -> None:
         """Turns once around on the spot, taking pictures."""
         state = self._vehicle.state()
         self._fly(_turn(np.asarray(state.position_m), state.yaw_rad, SWEEP_RAD), watch_way=False)
-        self.map = self._eyes.look(self.map)
+        self._seen_from.append(state.position_m)
+        self.map = self._eyes.redraw(self.map)
 
-    def go_towards(self, goal_m: Vec3) -> bool:
-        """Hops towards the goal while that brings the drone nearer. False when the vehicle cannot fly any more."""
+    def go_on(self) -> bool:
+        """Flies to the next place worth looking around from. False when there is none, or nothing can be flown."""
+        here = self._vehicle.state().position_m
+        look = LookAround(apart_m=self._settings.spacing_m / 2)
+        seen_from = np.asarray(self._seen_from)
+        path = next_view(self.map, self._limits, start_m=here, seen_from_m=seen_from, settings=look)
+        if path is None:
+            return False
+        trajectory = self._trajectory(path)
+        if trajectory is None:
+            x, y, z = (float(v) for v in path[-1])
+            self._seen_from.append((x, y, z))  # it cannot be reached; look elsewhere
+            return True
+        return self._fly(trajectory, watch_way=True)
+
+    def go_to(self, goal_m: Vec3) -> None:
+        """Flies to a place, as often as news on the way stop the drone."""
         for _ in range(MAX_HOPS):
-            here = np.asarray(self._vehicle.state().position_m)
-            if np.linalg.norm(here - goal_m) < self._settings.spacing_m / 8:
-                return True
-            path = nearest_reachable(self.map, self._limits, start_m=tuple(here), goal_m=goal_m)
-            if path is None or np.linalg.norm(path[-1] - goal_m) > np.linalg.norm(here - goal_m) - WORTH_M:
-                return True
-            trajectory = self._trajectory(path)
-            if trajectory is None:
-                return True
-            if not self._fly(trajectory, watch_way=True):
-                return False
-            self.map = self._eyes.look(self.map)
-        return True
+            here = self._vehicle.state().position_m
+            path = way_to(self.map, self._limits, start_m=here, goal_m=goal_m)
+            trajectory = None if path is None else self._trajectory(path)
+            if trajectory is None or not self._fly(trajectory, watch_way=True):
+                return
+            if np.linalg.norm(np.asarray(self._vehicle.state().position_m) - goal_m) < ARRIVED_M:
+                return
 
     def _trajectory(self, path: Floats) -> Trajectory | None:
         yaw = self._vehicle.state().yaw_rad
@@ -113,14 +129,14 @@ class _Surveyor:
         return trajectory
 
     def _fly(self, trajectory: Trajectory, *, watch_way: bool) -> bool:
-        def watch(_state: object) -> bool:
+        lookout = Lookout(trajectory.position_m[::10], self._limits)
+
+        def watch(state: VehicleState) -> bool:
             self._eyes.glance()
             if not watch_way:
                 return False
             self.map = self._eyes.redraw(self.map)
-            position = np.asarray(self._vehicle.state().position_m)
-            nearest = int(np.argmin(np.linalg.norm(trajectory.position_m - position, axis=1)))
-            return bool(check_path(trajectory.position_m[nearest + 1 :: 10], self.map, self._limits))
+            return bool(lookout.trouble(state.position_m, self.map))
 
         log = self._vehicle.follow(trajectory, watch)
         self._recorder.record(LegFlown(phase="survey", stop_id="", trajectory=trajectory, log=log))

@@ -1,40 +1,111 @@
-"""How near one can get: for surveys of a world that is only partly known."""
+"""Where to look from next: for surveys of a world that is only partly known.
+
+Frontier exploration with a gain: places that can be reached through known free space are weighed by how much that is
+unknown lies around them, and by how far away they are.
+"""
 
 from __future__ import annotations
 
-import numpy as np
+from dataclasses import dataclass
 
-from mintpilot.core.geometry import Floats, Vec3
+import numpy as np
+from scipy.ndimage import uniform_filter
+
+from mintpilot.core.errors import InfeasibleError
+from mintpilot.core.geometry import Bools, Floats, GridFrame, Ints, Vec3
 from mintpilot.core.plan import VehicleLimits
-from mintpilot.core.semantic_map import SemanticMap
+from mintpilot.core.semantic_map import Cell, SemanticMap
 from mintpilot.planning.flyable import known_flyable
 from mintpilot.planning.grid_search import distance_field, shortest_path
 
 
-def nearest_reachable(map: SemanticMap, limits: VehicleLimits, *, start_m: Vec3, goal_m: Vec3) -> Floats | None:
-    """The way to the known-flyable place that is nearest to the goal and can be reached from the start.
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LookAround:
+    """How places are weighed."""
+
+    range_m: float = 3.0
+    """Unknown space this near, along each axis, counts."""
+    least_gain_m3: float = 5.0
+    """Places with less unknown space around them are not worth going to."""
+    fading_m: float = 8.0
+    """At this distance a gain counts 1/e of what it counts here."""
+    apart_m: float = 2.0
+    """No place this near to one that was looked around from before."""
+    lowest_m: float = 1.0
+    """Height above the volume's floor, at least."""
+
+
+def next_view(
+    map: SemanticMap, limits: VehicleLimits, *, start_m: Vec3, seen_from_m: Floats, settings: LookAround
+) -> Floats | None:
+    """The way to the best place to look around from.
 
     Args:
         map: what is known.
         limits: size of the vehicle.
         start_m: where the vehicle is, metres; it may be up to half a metre from flyable space.
-        goal_m: where it would like to be, metres.
+        seen_from_m: places (n, 3) where it has looked around, metres.
+        settings: how places are weighed.
 
     Returns:
-        Way-points (n, 3), metres, beginning at the start; None where no flyable cell is near the start.
+        Way-points (n, 3), metres, beginning at the start; None where nothing is worth the way.
     """
     free = known_flyable(map, limits)
+    start = _nearest(free, map.frame, start_m)
+    if start is None:
+        return None
+    way_cells = distance_field(free, start)
+    cells = np.argwhere(np.isfinite(way_cells) & free)
+    centres = map.frame.centres_of(cells)
+    gain_m3 = _unknown_around(map, settings.range_m)[tuple(cells.T)]
+    way_m = way_cells[tuple(cells.T)] * map.frame.resolution_m
+    apart = np.full(len(cells), np.inf)
+    for place in seen_from_m:
+        apart = np.minimum(apart, np.linalg.norm(centres - place, axis=1))
+    high = centres[:, 2] >= map.frame.origin_m[2] + settings.lowest_m
+    worth = np.where(
+        (gain_m3 >= settings.least_gain_m3) & (apart > settings.apart_m) & high,
+        gain_m3 * np.exp(-way_m / settings.fading_m),
+        0.0,
+    )
+    if not worth.any():
+        return None
+    return _way(free, map.frame, start, cells[int(np.argmax(worth))], start_m)
+
+
+def way_to(map: SemanticMap, limits: VehicleLimits, *, start_m: Vec3, goal_m: Vec3) -> Floats | None:
+    """The shortest way through known flyable space; None where there is none. Ends are snapped within half a metre."""
+    free = known_flyable(map, limits)
+    start, goal = _nearest(free, map.frame, start_m), _nearest(free, map.frame, goal_m)
+    if start is None or goal is None:
+        return None
+    return _way(free, map.frame, start, np.asarray(goal), start_m)
+
+
+def _way(free: Bools, frame: GridFrame, start: tuple[int, int, int], goal: Ints, start_m: Vec3) -> Floats | None:
+    try:
+        _, way = shortest_path(free, start, goal)
+    except InfeasibleError:
+        return None
+    return np.vstack([np.asarray([start_m], float), frame.centres_of(way)])
+
+
+def _nearest(free: Bools, frame: GridFrame, point_m: Vec3) -> tuple[int, int, int] | None:
+    """The flyable cell nearest to a point, within half a metre."""
     cells = np.argwhere(free)
     if not len(cells):
         return None
-    centres = map.frame.centres_of(cells)
-    offsets = np.linalg.norm(centres - np.asarray(start_m), axis=1)
-    first = int(np.argmin(offsets))
-    if offsets[first] > 0.5:
-        return None
-    start = tuple(int(i) for i in cells[first])
-    reachable = np.isfinite(distance_field(free, start))[tuple(cells.T)]
-    distances = np.where(reachable, np.linalg.norm(centres - np.asarray(goal_m), axis=1), np.inf)
-    last = tuple(int(i) for i in cells[int(np.argmin(distances))])
-    _, way = shortest_path(free, start, last)
-    return np.vstack([np.asarray([start_m], float), map.frame.centres_of(way)])
+    offsets = np.linalg.norm(frame.centres_of(cells) - np.asarray(point_m), axis=1)
+    best = int(np.argmin(offsets))
+    z, y, x = (int(i) for i in cells[best])
+    return (z, y, x) if offsets[best] <= 0.5 else None
+
+
+def _unknown_around(map: SemanticMap, range_m: float) -> Floats:
+    """Cubic metres of unknown space within that distance along each axis, for every cell."""
+    width = 2 * max(1, round(range_m / map.frame.resolution_m)) + 1
+    unknown = (map.cells == Cell.UNKNOWN).astype(np.float64)
+    share: Floats = uniform_filter(unknown, size=[min(width, 2 * n + 1) for n in unknown.shape], mode="constant")
+    size = np.prod([min(width, 2 * n + 1) for n in unknown.shape]) * map.frame.resolution_m**3
+    around: Floats = share * float(size)
+    return around
