@@ -186,9 +186,12 @@ def test_an_unwritable_run_folder_ends_with_4(tmp_path, capsys):
 
 def test_demo_prints_a_report(tmp_path):
     done = call("demo", "--headless", "--vehicle", "kinematic", "--seed", 1, folder=tmp_path)
-    assert done.returncode == 0, done.stderr
-    assert "SUCCESS" in done.stdout.upper()
-    assert len(list((tmp_path / "runs").iterdir())) == 1
+    (folder,) = (tmp_path / "runs").iterdir()
+    outcome = json.loads((folder / "record.json").read_text())["outcome"]
+    assert done.returncode == (0 if outcome == "success" else 1), done.stderr
+    for words in ("What it saw", "What it did not know", "What it asked", "What it flew"):
+        assert words in done.stdout
+    assert "Mission 'fire-warehouse'" in done.stderr
 
 
 def test_an_answer_may_come_through_a_pipe(tmp_path):

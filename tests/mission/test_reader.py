@@ -152,7 +152,7 @@ BAD = [
     ("asking", {"answer_error": 0.5}, "asking.answer_error", ["0.5 must be below 0.5"]),
     ("asking", {"max_questions": 1.5}, "asking.max_questions", ["1.5 must be a whole number"]),
     ("asking", {"rule": "papr"}, "asking.rule", ["did you mean 'paper'?"]),
-    ("survey", {"height_m": 3}, "survey", ["needs no survey"]),
+    ("survey", {"spacing_m": 3}, "survey", ["needs no survey"]),
     ("priors", {"passable": 7}, "priors.passable", ["7 must be at most 1"]),
     ("operator", {"answer_error": -1}, "operator.answer_error", ["-1 must be at least 0"]),
     ("truth", {"smoke-9": "passable"}, "truth.smoke-9", ["no region, room or phrase", "did you mean 'smoke-1'?"]),

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import sys
 from dataclasses import dataclass
 from datetime import UTC, datetime
@@ -41,7 +40,6 @@ def fly(path: Path, options: FlightOptions) -> ExitCode:
     from mintpilot.recording.run_folder import new_run_path
     from mintpilot.recording.terminal_report import print_report
 
-    os.environ.setdefault("MUJOCO_GL", "egl")
     mission = read_mission(path)
     errors = Console(stderr=True)
     out = options.out or new_run_path(Path("runs"), mission.name, datetime.now(UTC))
@@ -59,7 +57,7 @@ def fly(path: Path, options: FlightOptions) -> ExitCode:
         except KeyboardInterrupt:
             narrator.rest()
             if out.exists():
-                errors.print(f"Stopped. What was recorded until then is in {out}.", highlight=False)
+                errors.print(f"Stopped. What was recorded until then is in {out}.", highlight=False, soft_wrap=True)
             raise
     if options.as_json:
         print(record.model_dump_json())

@@ -80,7 +80,7 @@ def demo(
 @app.command(
     help_epilogue=examples(
         "mintpilot run examples/medicine.yaml",
-        "mintpilot run examples/fire-warehouse.yaml --operator scripted --vehicle kinematic --seed 7 --json",
+        "mintpilot run examples/medicine.yaml --vehicle kinematic --seed 7 --json",
     )
 )
 def run(

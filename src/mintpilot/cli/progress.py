@@ -79,7 +79,7 @@ class Narrator:
         self._bar.update(self._bar.task_ids[0], description=stage)
 
     def _say(self, line: str) -> None:
-        self._console.print(Text("".join(c if c.isprintable() else " " for c in line)), highlight=False)
+        self._console.print(Text("".join(c if c.isprintable() else " " for c in line)), soft_wrap=True)
 
 
 class Attended(Operator):
