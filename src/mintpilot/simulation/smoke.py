@@ -19,12 +19,14 @@ from mintpilot.simulation.scene import Scene
 
 SMOKE_EXTINCTION_PER_M = 2.4
 """At the mean density; 2 m of cloud let about 3 % of the light through."""
-FLAME_EXTINCTION_PER_M = 9.0
+FLAME_EXTINCTION_PER_M = 8.0
 SENSOR_TAU = 1.0
 """Optical depth from which the depth sensor gets its return."""
 EDGE_M = 0.3
 """A cloud thins out over this distance from its sides; it reaches floor and roof."""
-STEPS = 28
+STEP_M = 0.12
+"""Length of a step along a ray, metres, while the ray has no more than `MOST_STEPS` of them."""
+MOST_STEPS = 28
 _NOISE_CELLS = 64
 _Grid = NDArray[np.float32]
 
@@ -136,6 +138,14 @@ def _density(noise: _Grid, x: float, y: float, z: float) -> float:
 
 
 @nb.njit(fastmath=True, cache=True)
+def _nearby(noise: _Grid, x: float, y: float, z: float) -> float:
+    """Sample of the periodic noise without interpolation: for detail that jitter blurs anyway."""
+    n = noise.shape[0]
+    value: float = noise[int(np.floor(x)) % n, int(np.floor(y)) % n, int(np.floor(z)) % n]
+    return value
+
+
+@nb.njit(fastmath=True, cache=True)
 def _span(pose: Floats, d: Floats, lo: Floats, hi: Floats, far: float) -> tuple[float, float]:
     """Part of a ray inside a box, in units of depth along the axis; empty when the second is not above the first."""
     near = 0.02
@@ -177,19 +187,23 @@ def _march_smoke(
             near, far = _span(pose, d, lo, hi, depth[v, u])
             if far <= near:
                 continue
-            step = (far - near) / STEPS
-            metres = step * np.sqrt(d[0] ** 2 + d[1] ** 2 + d[2] ** 2)
+            metres = (far - near) * np.sqrt(d[0] ** 2 + d[1] ** 2 + d[2] ** 2)
+            steps = min(MOST_STEPS, 3 + int(metres / STEP_M))
+            step, metres = (far - near) / steps, metres / steps
             clear, tau, hit = 1.0, 0.0, -1.0
             r, g, b = 0.0, 0.0, 0.0
-            for s in range(STEPS):
+            for s in range(steps):
                 t = near + (s + jitter[v & 31, u & 31]) * step
                 x, y, z = pose[0, 3] + d[0] * t, pose[1, 3] + d[1] * t, pose[2, 3] + d[2] * t
-                edge = min(min(x - lo[0], hi[0] - x), min(y - lo[1], hi[1] - y)) / EDGE_M
-                if edge <= 0.0:
+                inside = min(min(x - lo[0], hi[0] - x), min(y - lo[1], hi[1] - y))
+                if inside <= 0.0:
                     continue
                 low, high = (z - lo[2]) / (hi[2] - lo[2]), 0.0
-                fine = _density(noise, (x + 0.12 * time) * 7 + offset, (y + 0.05 * time) * 7, (z - 0.35 * time) * 7)
-                wide = _density(noise, x * 2.3 + offset, y * 2.3 + 0.1 * time, (z - 0.2 * time) * 2.3)
+                wide = _density(noise, x * 2.6 + offset, y * 2.6 + 0.1 * time, (z - 0.2 * time) * 2.6)
+                edge = (inside + 0.25 * (wide - 0.75)) / EDGE_M
+                if edge <= 0.0:
+                    continue
+                fine = _nearby(noise, (x + 0.12 * time) * 9 + offset, (y + 0.05 * time) * 9, (z - 0.35 * time) * 9)
                 thick = SMOKE_EXTINCTION_PER_M * (0.35 + 0.5 * fine + 0.6 * wide) * min(1.0, edge) * (0.75 + 0.4 * low)
                 opaque = 1.0 - np.exp(-thick * metres)
                 if glow > 0.0:
@@ -203,7 +217,7 @@ def _march_smoke(
                 tau += thick * metres
                 if hit < 0.0 and tau > SENSOR_TAU:
                     hit = t
-                if clear < 0.01:
+                if clear < 0.02:
                     break
             rgb[v, u, 0] = np.uint8(min(255.0, rgb[v, u, 0] * clear + r))
             rgb[v, u, 1] = np.uint8(min(255.0, rgb[v, u, 1] * clear + g))
@@ -239,31 +253,38 @@ def _march_flame(
             near, far = _span(pose, d, lo, hi, depth[v, u])
             if far <= near:
                 continue
-            step = (far - near) / STEPS
-            metres = step * np.sqrt(d[0] ** 2 + d[1] ** 2 + d[2] ** 2)
+            metres = (far - near) * np.sqrt(d[0] ** 2 + d[1] ** 2 + d[2] ** 2)
+            steps = min(MOST_STEPS, 3 + int(metres / STEP_M))
+            step, metres = (far - near) / steps, metres / steps
             clear, tau, hit = 1.0, 0.0, -1.0
             r, g, b = 0.0, 0.0, 0.0
-            for s in range(STEPS):
+            for s in range(steps):
                 t = near + (s + jitter[v & 31, u & 31]) * step
                 x, y, z = pose[0, 3] + d[0] * t, pose[1, 3] + d[1] * t, pose[2, 3] + d[2] * t
                 h = (z - lo[2]) / rise
-                sway = (_density(noise, offset, y * 3, z * 4 - 5.0 * time) - 0.6) * 0.5 * h
+                sway = (_density(noise, offset + 3 * x, y * 3, z * 2.5 - 3.0 * time) - 0.6) * 0.35 * h
                 ex = 2 * (x + sway - glow_m[0]) / (hi[0] - lo[0])
-                ey = 2 * (y + sway - glow_m[1]) / (hi[1] - lo[1])
-                tongue = _density(noise, x * 6 + offset, y * 6, (z - 2.6 * time) * 3)
-                fine = _density(noise, x * 15 + offset, y * 15, (z - 3.4 * time) * 8)
-                heat = 1.25 - 0.85 * (ex * ex + ey * ey) - 1.15 * h + 0.75 * (tongue - 0.6) + 0.35 * (fine - 0.6)
+                ey = 2 * (y - sway - glow_m[1]) / (hi[1] - lo[1])
+                body = 1.0 - (ex * ex + ey * ey)
+                if body <= 0.0:
+                    continue
+                # How high the tongue at this place reaches; it changes slowly with height, so tongues stand upright.
+                tongue = _density(noise, (x + sway) * 13 + offset, (y - sway) * 13, z * 1.5 - 2.2 * time)
+                fine = _density(noise, x * 16 + offset, y * 16, z * 7 - 9.0 * time)
+                heat = 1.5 * (body**0.5 * (0.1 + 0.7 * tongue) - h) + 0.35 * (fine - 0.6)
+                heat = min(heat, 4.0 * (1.0 - h))
                 if heat <= 0.0:
                     continue
-                opaque = 1.0 - np.exp(-FLAME_EXTINCTION_PER_M * min(1.0, 1.6 * heat) * metres)
-                r += clear * opaque * 255.0
-                g += clear * opaque * min(245.0, 45.0 + 215.0 * heat)
-                b += clear * opaque * min(190.0, max(6.0, 190.0 * (heat - 0.75)))
+                thick = FLAME_EXTINCTION_PER_M * min(1.0, 2.2 * heat)
+                opaque = 1.0 - np.exp(-thick * metres)
+                r += clear * opaque * min(255.0, 190.0 + 330.0 * heat)
+                g += clear * opaque * min(240.0, 40.0 + 270.0 * heat)
+                b += clear * opaque * min(170.0, max(8.0, 230.0 * (heat - 0.65)))
                 clear *= 1.0 - opaque
-                tau += FLAME_EXTINCTION_PER_M * min(1.0, 1.6 * heat) * metres
+                tau += thick * metres
                 if hit < 0.0 and tau > SENSOR_TAU:
                     hit = t
-                if clear < 0.01:
+                if clear < 0.02:
                     break
             rgb[v, u, 0] = np.uint8(min(255.0, rgb[v, u, 0] * clear + r))
             rgb[v, u, 1] = np.uint8(min(255.0, rgb[v, u, 1] * clear + g))

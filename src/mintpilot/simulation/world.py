@@ -15,9 +15,10 @@ from mintpilot.simulation.engine import load_mujoco
 from mintpilot.simulation.materials import add_materials
 from mintpilot.simulation.scene import Scene, Solid
 
-CEILING_GAP_M = 0.35
+CEILING_GAP_M = 0.45
 """Between the top of the volume and the ceiling: beams and lamps hang here."""
-LAMP_SPACING_M = 7.0
+_GLOWS = 3
+"""Fires that light the hall: the drawing library takes eight lights, four are lamps, one is the camera's."""
 SHELL_M = 0.2
 _FAR_BELOW_M = 60.0
 
@@ -103,53 +104,43 @@ def _add_shell(maker: props.Maker, volume: Box) -> None:
     count = max(2, round((x1 - x0) / 4.0))
     for i in range(1, count):
         x = x0 + (x1 - x0) * i / count
-        maker.box(Box(lo_m=(x - 0.08, y0, z1 + 0.05), hi_m=(x + 0.08, y1, top)), "beam", group=props.CEILING_GROUP)
+        maker.box(Box(lo_m=(x - 0.08, y0, z1 + 0.2), hi_m=(x + 0.08, y1, top)), "beam", group=props.CEILING_GROUP)
 
 
 def _lamp_places(volume: Box) -> list[Vec3]:
     (x0, y0, _), (x1, y1, z1) = volume.lo_m, volume.hi_m
-    nx, ny = max(1, round((x1 - x0) / LAMP_SPACING_M)), max(1, round((y1 - y0) / LAMP_SPACING_M))
-    return [
-        (x0 + (x1 - x0) * (i + 0.5) / nx, y0 + (y1 - y0) * (j + 0.5) / ny, z1 + CEILING_GAP_M - 0.05)
-        for i in range(nx)
-        for j in range(ny)
-    ]
+    return [(x0 + (x1 - x0) * i, y0 + (y1 - y0) * j, z1 + 0.18) for i in (0.25, 0.75) for j in (0.25, 0.75)]
 
 
 def _add_lights(spec: Any, scene: Scene, mujoco: Any) -> None:
     """Ceiling lamps, of which one throws shadows, and the glow of each fire."""
     maker = props.Maker(mujoco=mujoco, body=spec.worldbody, prefix="lamp")
-    places = _lamp_places(scene.volume)
-    middle = min(
-        range(len(places)), key=lambda i: sum(abs(a - b) for a, b in zip(places[i], scene.volume.centre_m, strict=True))
-    )
-    for i, (x, y, z) in enumerate(places):
+    for i, (x, y, z) in enumerate(_lamp_places(scene.volume)):
         spec.worldbody.add_light(
             name=f"lamp:{i}",
-            pos=[x, y, z - 0.08],
+            pos=[x, y, z - 0.1],
             dir=[0, 0, -1],
-            castshadow=i == middle,
-            diffuse=[0.42, 0.41, 0.38],
+            castshadow=i == 0,
+            diffuse=[0.62, 0.60, 0.56],
             specular=[0.05] * 3,
-            attenuation=[1, 0.02, 0.015],
+            attenuation=[1, 0.02, 0.01],
             cutoff=80,
             exponent=1,
             type=mujoco.mjtLightType.mjLIGHT_SPOT,
         )
         lamp = Box(lo_m=(x - 0.6, y - 0.1, z - 0.06), hi_m=(x + 0.6, y + 0.1, z))
         maker.box(lamp, "lamp", group=props.CEILING_GROUP, solid=False)
-    for solid in scene.solids:
-        if solid.kind == "fire":
-            x, y, _ = solid.extent_m.centre_m
-            spec.worldbody.add_light(
-                name=f"glow:{solid.id}",
-                pos=[x, y, solid.extent_m.hi_m[2]],
-                castshadow=False,
-                diffuse=[0.9, 0.42, 0.1],
-                specular=[0] * 3,
-                attenuation=[1, 0.1, 0.15],
-                type=mujoco.mjtLightType.mjLIGHT_POINT,
-            )
+    for solid in [s for s in scene.solids if s.kind == "fire"][:_GLOWS]:
+        x, y, _ = solid.extent_m.centre_m
+        spec.worldbody.add_light(
+            name=f"glow:{solid.id}",
+            pos=[x, y, solid.extent_m.hi_m[2]],
+            castshadow=False,
+            diffuse=[0.9, 0.42, 0.1],
+            specular=[0.0] * 3,
+            attenuation=[1, 0.1, 0.15],
+            type=mujoco.mjtLightType.mjLIGHT_POINT,
+        )
 
 
 def _add_cameras(spec: Any, volume: Box) -> None:
