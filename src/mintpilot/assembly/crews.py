@@ -142,6 +142,7 @@ class _CrewContext(AbstractContextManager[Crew]):
             recorder=self._recorder,
             survey=first_map,
             judge=simulator,
+            simulated=True,
             watch_map=watch_map,
             strategy_name=self._choices.strategy,
             seed=self._world.seed,

@@ -39,6 +39,8 @@ class Crew:
     judge: Judge | None = None
     """In a simulator, says how it really went."""
     word: Wording = word_question
+    simulated: bool = False
+    """True in a simulator only: baselines may then fly what is not known to be passable."""
     watch_map: bool = True
     """False where the map is given and nothing new can be seen."""
     strategy_name: str = "mint"
@@ -91,7 +93,7 @@ def _think_and_fly(crew: Crew, mind: Mind) -> Verdict:
             why = decision.certificate.text
             break
         begun = time.perf_counter()
-        unsafe = _regions_entered(decision) if decision.unsafe else frozenset()
+        unsafe = _regions_entered(decision) if decision.unsafe and crew.simulated else frozenset()
         progress = pilot.fly(decision.plan, pretend_passable=unsafe)
         crew.recorder.record(Timed(stage="flight", seconds=time.perf_counter() - begun))
         mind = replace(mind, map=progress.map, finished=mind.finished | progress.finished)

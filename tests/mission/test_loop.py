@@ -1,0 +1,129 @@
+"""The loop with real parts: kinematic drone, grid planner, tree, templates, scripted operators."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from mintpilot.assembly.api import run_mission
+from mintpilot.assembly.crews import Choices, crew_for
+from mintpilot.assembly.worlds import build_world
+from mintpilot.core.events import Event, LegFlown, PlanChosen
+from mintpilot.core.mission import Outcome
+from mintpilot.core.query import Answer, Command, Reply
+from mintpilot.core.tree import StopReason
+from mintpilot.interaction.scripted import FunctionOperator, RecordedOperator
+from mintpilot.mission.loop import fly_mission
+from mintpilot.mission.schema import MissionFile
+from mintpilot.recording.recorders import MemoryRecorder
+from tests.mission.scenes import hall, wall
+
+
+def fly(file: MissionFile, operator: object = "scripted", strategy: str = "mint"):
+    events: list[Event] = []
+    record = run_mission(file, operator=operator, vehicle="kinematic", strategy=strategy, progress=events.append)
+    flown = [e.log.position_m for e in events if isinstance(e, LegFlown)]
+    return record, np.vstack(flown) if flown else np.zeros((0, 3)), events
+
+
+def enters_cloud(path: np.ndarray) -> bool:
+    inside = (path[:, 0] > 5.2) & (path[:, 0] < 7.0) & (path[:, 1] > 0.2) & (path[:, 1] < 3.6)
+    return bool(inside.any())
+
+
+@pytest.mark.parametrize("toxic", [True, False])
+def test_asks_about_the_smoke_and_flies_accordingly(toxic: bool) -> None:
+    record, path, _ = fly(hall(toxic=toxic))
+    assert record.outcome is Outcome.SUCCESS
+    assert [q.reply for q in record.questions] == [Reply.NO if toxic else Reply.YES]
+    assert enters_cloud(path) is not toxic
+
+
+def test_silence_means_the_cautious_way() -> None:
+    record, path, events = fly(hall(toxic=False), RecordedOperator([]))
+    assert record.outcome is Outcome.SUCCESS
+    assert not enters_cloud(path)
+    assert record.certificate is not None
+    assert record.certificate.reason is StopReason.SILENCE
+    assert any(n.kind == "silence" for n in record.notices)
+    assert len(record.questions) == 1
+
+
+def test_silence_without_a_cautious_way_stays_safe() -> None:
+    record, path, _ = fly(hall(toxic=False, detour=False), RecordedOperator([]))
+    assert record.outcome is Outcome.NO_SAFE_PLAN
+    assert not enters_cloud(path)
+
+
+@pytest.mark.parametrize("command", [Command.ABORT, Command.HOLD, Command.RETURN])
+def test_orders_are_obeyed_at_once(command: Command) -> None:
+    operator = RecordedOperator([Answer(reply=Reply.UNSURE, latency_s=1.0, text="stop", command=command)])
+    record, path, _ = fly(hall(), operator)
+    assert record.outcome is Outcome.ABORTED
+    assert len(operator.questions) == 1
+    assert len(path) == 0 or np.ptp(path[:, 0]) < 1.0
+
+
+def test_unsure_withdraws_the_question_and_the_safe_way_is_flown() -> None:
+    record, path, _ = fly(hall(toxic=False), FunctionOperator(lambda question, patience: Reply.UNSURE))
+    assert record.outcome is Outcome.SUCCESS
+    assert not enters_cloud(path)
+    assert len({q.query for q in record.questions}) == len(record.questions)
+
+
+def test_one_yes_is_not_enough_when_answers_may_be_wrong() -> None:
+    operator = RecordedOperator([Reply.YES] * 9)
+    record, path, _ = fly(hall(toxic=False, asking={"answer_error": 0.1}), operator)
+    yes = sum(q.reply is Reply.YES for q in record.questions)
+    assert record.outcome is Outcome.SUCCESS
+    assert yes >= 2 or not enters_cloud(path)
+
+
+def test_the_number_of_questions_stays_within_the_budget() -> None:
+    flip = iter([Reply.YES, Reply.NO] * 50)
+    operator = FunctionOperator(lambda question, patience: next(flip))
+    record, path, _ = fly(hall(asking={"answer_error": 0.3, "max_questions": 5}), operator)
+    assert len(record.questions) <= 5
+    assert not enters_cloud(path)
+
+
+def test_something_that_falls_into_the_way_makes_it_think_again() -> None:
+    fallen = wall("fallen", 8.0, (0.5, 6.0), appears_s=2.0)
+    record, path, events = fly(hall(toxic=False, solids=[fallen]))
+    assert record.outcome is Outcome.SUCCESS, record.reason
+    assert any(n.kind == "news" for n in record.notices)
+    assert len([e for e in events if isinstance(e, PlanChosen)]) >= 2
+    assert path[:, 1].max() > 5.5
+
+
+def test_a_battery_that_allows_no_detour_and_toxic_smoke_leave_no_plan() -> None:
+    record, path, _ = fly(hall(toxic=True, endurance_s=11.0))
+    assert record.outcome is Outcome.NO_SAFE_PLAN
+    assert not enters_cloud(path)
+
+
+def test_the_risky_baseline_is_judged_by_the_simulator() -> None:
+    record, _, _ = fly(hall(toxic=True), strategy="passive-risky")
+    assert record.outcome is Outcome.TOXIC_SMOKE
+    assert record.questions == ()
+
+
+def test_an_interrupt_leaves_the_vehicle_holding_and_a_verdict() -> None:
+    def interrupt(question: object, patience: float) -> Reply:
+        raise KeyboardInterrupt
+
+    world = build_world(hall(), base=None, seed=0)
+    recorder = MemoryRecorder()
+    choices = Choices(vehicle="kinematic")
+    with crew_for(world, choices, operator=FunctionOperator(interrupt), recorder=recorder) as crew:
+        with pytest.raises(KeyboardInterrupt):
+            fly_mission(crew)
+        assert np.linalg.norm(crew.vehicle.state().velocity_mps) < 1e-6
+    assert recorder.events[-1].verdict.outcome is Outcome.ABORTED
+
+
+def test_same_seed_same_record() -> None:
+    def stable(record):
+        return record.model_dump(exclude={"timings_s", "rounds", "questions"}), [q.text for q in record.questions]
+
+    assert stable(fly(hall())[0]) == stable(fly(hall())[0])
