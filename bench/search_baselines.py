@@ -61,7 +61,7 @@ class Scipy:
         self._lattice = lattice
         rows, columns, lengths = [], [], []
         for k, (offset, length) in enumerate(zip(lattice.offset, lattice.moves.length, strict=True)):
-            nodes = np.flatnonzero(lattice.allowed >> np.uint32(k) & np.uint32(1))
+            nodes = np.flatnonzero(lattice.allowed >> np.uint64(k) & np.uint64(1))
             rows.append(nodes)
             columns.append(nodes + offset)
             lengths.append(np.full(nodes.size, length))

@@ -7,7 +7,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from mintpilot.core.geometry import Floats, Ints
-from mintpilot.planning.kernels import PER_EDGE, RING, SLACK, lowest_bit
+from mintpilot.planning.kernels import PER_EDGE, RING, SLACK, lowest_bit, redundant
 from mintpilot.planning.lattice import NEAR, Words
 from mintpilot.planning.moves import NO_MOVE
 
@@ -86,7 +86,10 @@ def search_labels(
     allowed: Words,
     offset: Ints,
     length: Floats,
-    natural: Words,
+    after: NDArray[np.uint32],
+    detour: NDArray[np.uint32],
+    open_ground: np.uint32,
+    around: Ints,
     swept: Ints,
     region: NDArray[np.uint64],
     start: int,
@@ -130,13 +133,18 @@ def search_labels(
             count = keep(found, count, g, mask, label)
             continue
         expanded += 1
+        ground = allowed[node] >> np.uint64(32)
         near = allowed[node] & NEAR
-        word = allowed[node] & ~NEAR
-        if allowed[node] == natural[NO_MOVE]:
-            word &= natural[last]
+        if near:
+            for i in range(around.size):
+                if region[node + around[i]] & ~mask:
+                    ground &= ~(np.uint64(1) << np.uint64(i))
+        word = allowed[node] & after[last, 1 if ground == open_ground else 0]
         while word:
             k = lowest_bit(word)
-            word &= word - np.uint32(1)
+            word &= word - np.uint64(1)
+            if redundant(ground, detour, last, k):
+                continue
             to = node + offset[k]
             if cells[to].tag != tag:
                 continue

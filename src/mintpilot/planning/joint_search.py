@@ -117,12 +117,12 @@ class JointSearch:
         nearest = [float(through[r].min(initial=np.inf)) for r in self.regions]
         return tuple(sorted(sorted(range(count), key=lambda r: (nearest[r], r))[:MAX_REGIONS]))
 
-    def _distances(self, source: int, allowed: NDArray[np.uint32]) -> Floats:
+    def _distances(self, source: int, allowed: NDArray[np.uint64]) -> Floats:
         self.grid.node_field(source, -1, np.inf, allowed)
         cells = self.grid.work.cells
         return np.where(cells["tag"] == self.grid.work.tag, cells["g"], np.inf)
 
-    def _opened(self, chosen: tuple[int, ...]) -> NDArray[np.uint32]:
+    def _opened(self, chosen: tuple[int, ...]) -> NDArray[np.uint64]:
         """Allowed moves with the chosen regions passable and the others blocked."""
         lattice = self.grid.lattice
         if len(chosen) == len(self.regions):
@@ -147,7 +147,10 @@ class JointSearch:
                 overlay.near,
                 lattice.offset,
                 moves.length,
-                moves.natural,
+                moves.after,
+                moves.detour,
+                moves.open,
+                lattice.around,
                 lattice.swept,
                 overlay.region,
                 start,

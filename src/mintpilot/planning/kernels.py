@@ -20,6 +20,7 @@ from numba.extending import intrinsic
 from numpy.typing import NDArray
 
 from mintpilot.core.geometry import Floats, Ints
+from mintpilot.planning.lattice import Words
 from mintpilot.planning.moves import NO_MOVE
 
 CELL = np.dtype([("g", np.float64), ("tag", np.uint32), ("last", np.int32)])
@@ -46,8 +47,14 @@ def _lowest_bit(typingctx: Any, word: Any) -> Any:  # noqa: ARG001
     return word(word), codegen
 
 
-lowest_bit: Callable[[np.uint32], int] = cast(Any, intrinsic)(_lowest_bit)
+lowest_bit: Callable[[np.uint64], int] = cast(Any, intrinsic)(_lowest_bit)
 """Index of the lowest bit that is set (the word must not be 0)."""
+
+
+@njit(cache=True, error_model="numpy")
+def redundant(ground: np.uint64, detour: NDArray[np.uint32], last: int, k: int) -> bool:
+    """Whether the free surroundings make move k needless after the last one (`mintpilot.planning.moves`)."""
+    return ground & detour[last, k, 0] == detour[last, k, 0] or ground & detour[last, k, 1] == detour[last, k, 1]
 
 
 @njit(cache=True, error_model="numpy")
@@ -102,11 +109,13 @@ def put(
 
 @njit(cache=True, error_model="numpy")
 def astar(
-    allowed: NDArray[np.uint32],
+    allowed: Words,
     offset: Ints,
     step: Floats,
     length: Floats,
-    natural: NDArray[np.uint32],
+    after: NDArray[np.uint32],
+    detour: NDArray[np.uint32],
+    open_ground: np.uint32,
     nx: int,
     ny: int,
     start: int,
@@ -157,12 +166,13 @@ def astar(
         x, y, z = coordinates(node, nx, ny)
         if best < np.inf and guide is None and g + octile(x - gx, y - gy, z - gz) >= limit:
             continue
-        word = allowed[node]
-        if word == natural[NO_MOVE]:
-            word &= natural[last]
+        ground = allowed[node] >> np.uint64(32)
+        word = allowed[node] & after[last, 1 if ground == open_ground else 0]
         while word:
             k = lowest_bit(word)
-            word &= word - np.uint32(1)
+            word &= word - np.uint64(1)
+            if redundant(ground, detour, last, k):
+                continue
             to = node + offset[k]
             cost = g + length[k]
             if cells[to].tag == tag and cost >= cells[to].g - 1e-12:
@@ -183,11 +193,13 @@ def astar(
 
 @njit(cache=True, error_model="numpy")
 def field(
-    allowed: NDArray[np.uint32],
+    allowed: Words,
     offset: Ints,
     step: Floats,
     length: Floats,
-    natural: NDArray[np.uint32],
+    after: NDArray[np.uint32],
+    detour: NDArray[np.uint32],
+    open_ground: np.uint32,
     nx: int,
     ny: int,
     source: int,
@@ -222,12 +234,14 @@ def field(
         if used + length.size > pool.size:
             return -1
         x, y, z = coordinates(node, nx, ny)
-        word = allowed[node]
-        if word == natural[NO_MOVE]:
-            word &= natural[cells[node].last]
+        last = cells[node].last
+        ground = allowed[node] >> np.uint64(32)
+        word = allowed[node] & after[last, 1 if ground == open_ground else 0]
         while word:
             k = lowest_bit(word)
-            word &= word - np.uint32(1)
+            word &= word - np.uint64(1)
+            if redundant(ground, detour, last, k):
+                continue
             to = node + offset[k]
             cost = g + length[k]
             if cells[to].tag == tag and cost >= cells[to].g - 1e-12:

@@ -21,9 +21,10 @@ from mintpilot.core.errors import MapError
 from mintpilot.core.geometry import Bools, Ints, frozen
 from mintpilot.planning.moves import MOVES_2D, MOVES_3D, Moves
 
-Words = NDArray[np.uint32]
+Words = NDArray[np.uint64]
+"""For each node: bit k is set when move k is allowed, bit 32 + i when the i-th node around it is free."""
 
-NEAR = np.uint32(1 << 31)
+NEAR = np.uint64(1 << 31)
 """Set in the word of a cell whose 3 x 3 (x 3) neighbourhood touches a region."""
 
 
@@ -38,7 +39,7 @@ class Lattice:
     free: NDArray[np.uint8]
     """1 for each free node, flat."""
     allowed: Words
-    """Bit k is set when move k may be made from the node."""
+    """Allowed moves and surroundings of each node."""
     moves: Moves
     """Steps and lengths of the moves."""
     offset: Ints
@@ -126,25 +127,25 @@ def _swept(moves: Moves, around: Ints) -> Ints:
     return np.array(rows, np.int64)
 
 
-@njit(cache=True)
-def allowed_moves(free: NDArray[np.uint8], around: Ints, needs: Words) -> Words:
-    """The word of allowed moves of every node."""
-    allowed = np.zeros(free.size, np.uint32)
+@njit(cache=True, error_model="numpy")
+def allowed_moves(free: NDArray[np.uint8], around: Ints, needs: NDArray[np.uint32]) -> Words:
+    """The word of every node; 0 for those that are not free."""
+    allowed = np.zeros(free.size, np.uint64)
     for node in range(free.size):
         if free[node]:
             allowed[node] = moves_at(free, around, needs, node)
     return allowed
 
 
-@njit(cache=True)
-def moves_at(free: NDArray[np.uint8], around: Ints, needs: Words, node: int) -> np.uint32:
-    """The word of allowed moves of one free node: those whose swept block is free."""
-    ground = np.uint32(0)
+@njit(cache=True, error_model="numpy")
+def moves_at(free: NDArray[np.uint8], around: Ints, needs: NDArray[np.uint32], node: int) -> np.uint64:
+    """The word of one free node: a move is allowed if the block that it sweeps is free."""
+    ground = np.uint64(0)
     for i in range(around.size):
         if free[node + around[i]]:
-            ground |= np.uint32(1) << np.uint32(i)
-    word = np.uint32(0)
+            ground |= np.uint64(1) << np.uint64(i)
+    word = ground << np.uint64(32)
     for k in range(needs.size):
         if ground & needs[k] == needs[k]:
-            word |= np.uint32(1) << np.uint32(k)
-    return np.uint32(word)
+            word |= np.uint64(1) << np.uint64(k)
+    return np.uint64(word)

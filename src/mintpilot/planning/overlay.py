@@ -62,14 +62,14 @@ def _mark(lattice: Lattice, nodes: Ints) -> NDArray[np.uint8]:
     return free
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _close(
     without: Words,
     near: Words,
     free: NDArray[np.uint8],
     rest: NDArray[np.uint8],
     around: Ints,
-    needs: Words,
+    needs: NDArray[np.uint32],
     nodes: Ints,
 ) -> None:
     """Takes from ``without`` the moves that touch the nodes (not free in ``rest``); marks their neighbours in near."""
@@ -79,10 +79,10 @@ def _close(
             if not free[other] or near[other] & NEAR:
                 continue
             near[other] |= NEAR
-            without[other] &= moves_at(rest, around, needs, other) if rest[other] else np.uint32(0)
+            without[other] &= moves_at(rest, around, needs, other) if rest[other] else np.uint64(0)
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def entered_by(path: Ints, offset: Ints, swept: Ints, region: NDArray[np.uint64]) -> np.uint64:
     """Bit set of the regions that a path of nodes touches, side cells of its diagonal moves included."""
     mask = region[path[0]]
