@@ -11,7 +11,8 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 readonly LEVEL=${1:-dev}
 readonly VENV=.venv
-readonly GL_PACKAGES="libegl1 libegl-mesa0 libgl1-mesa-dri libosmesa6"
+readonly GL_PACKAGES="libegl1 libegl-mesa0 libgl1-mesa-dri"
+readonly GL_SPARE=libosmesa6 # a second way to draw; newer systems have it no more
 
 case $LEVEL in
     run) EXTRAS=sim ;;
@@ -62,7 +63,7 @@ install_gl() {
         dpkg-query -W -f '${Status}' "$package" 2>/dev/null | grep -q 'ok installed' || missing+=("$package")
     done
     [ ${#missing[@]} -gt 0 ] || return 0
-    apt_install "${missing[@]}" \
+    apt_install "${missing[@]}" "$GL_SPARE" \
         || say "flying in MuJoCo needs system libraries; ask your administrator for: sudo apt-get install -y ${missing[*]}"
 }
 

@@ -17,7 +17,7 @@ from pathlib import Path
 
 from mintpilot.cli.exits import ExitCode
 
-GL_PACKAGES = "libegl1 libegl-mesa0 libgl1-mesa-dri libosmesa6"
+GL_PACKAGES = "libegl1 libegl-mesa0 libgl1-mesa-dri"
 _DRAW = """
 import mujoco
 model = mujoco.MjModel.from_xml_string("<mujoco><worldbody><geom size='1'/></worldbody></mujoco>")
