@@ -32,16 +32,17 @@ check: setup ## formatting, lint, types and import rules
 	@$(BIN)/mypy
 	@$(BIN)/lint-imports
 
-bench: setup ## compare the strategies; records go to runs/bench
-	@$(BIN)/python -m bench.run $(ARGS)
+bench: setup ## measure the search against its yardsticks, the small ones (ARGS="--json FILE")
+	@$(BIN)/python -m bench.search --quick $(ARGS)
 
-table: setup ## make the tables and plots from those records
-	@$(BIN)/python -m bench.table $(ARGS)
+results: setup ## measure everything that docs/results.md states, and write it; takes long
+	@$(BIN)/python -m bench.search
+	@$(BIN)/python -m bench.missions
 
-results: setup ## measure what docs/results.md states, and write it
-	@$(BIN)/python -m bench.results $(ARGS)
+table: setup ## write docs/results.md anew from what was measured
+	@$(BIN)/python -c 'from bench.sections import write_page; write_page()'
 
-docs: setup ## generate docs/cli.md, docs/mission.schema.json and the example map
+docs: setup ## generate docs/cli.md and docs/mission.schema.json
 	@$(BIN)/python scripts/make_docs.py
 
 ci: ## what the continuous integration runs

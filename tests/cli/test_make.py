@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[2]
-TARGETS = "demo test setup fix check bench table docs results ci clean".split()
+TARGETS = ["demo", "test", "setup", "fix", "check", "bench", "table", "docs", "results", "ci", "clean"]
 pytestmark = pytest.mark.skipif(not shutil.which("make"), reason="make is not installed")
 
 
