@@ -73,6 +73,7 @@ class EmbeddedModel(LanguageModel):
         """Ends the process."""
         self._process.kill()
         self._process.wait()
+        self._reader.join(1.0)
         if self._process.stdin is not None:
             with suppress(OSError):
                 self._process.stdin.close()
@@ -93,8 +94,8 @@ class EmbeddedModel(LanguageModel):
         )
         self._answers: queue.Queue[dict[str, Any] | None] = queue.Queue()
         self._sent, self._heard, self._since_s = 0, -1, time.monotonic()
-        reader = threading.Thread(target=_listen, args=(self._process.stdout, self._answers), daemon=True)
-        reader.start()
+        self._reader = threading.Thread(target=_listen, args=(self._process.stdout, self._answers), daemon=True)
+        self._reader.start()
 
     def _send(self, request: dict[str, Any]) -> None:
         assert self._process.stdin is not None
@@ -123,7 +124,8 @@ class EmbeddedModel(LanguageModel):
 
 def _listen(pipe: IO[str] | None, answers: queue.Queue[dict[str, Any] | None]) -> None:
     """Passes the process's answers on; None at its end."""
-    with suppress(OSError, ValueError):
-        for line in pipe or ():
-            answers.put(json.loads(line))
+    if pipe is not None:
+        with suppress(OSError, ValueError), pipe:
+            for line in pipe:
+                answers.put(json.loads(line))
     answers.put(None)

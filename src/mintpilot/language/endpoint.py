@@ -115,6 +115,7 @@ class EndpointModel(LanguageModel):
             with build_opener(_NoRedirect).open(request, timeout=timeout_s) as response:
                 raw: bytes = response.read(_MOST_BYTES + 1)
         except HTTPError as error:
+            error.close()
             raise DeviceError(
                 f"language model server answered {error.code}: check key, address and the model's name '{self._model}'"
             ) from None

@@ -1,0 +1,171 @@
+"""The endpoint adapter against a real server on this machine."""
+
+from __future__ import annotations
+
+import json
+import threading
+import time
+from collections.abc import Callable, Iterator
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from typing import Any
+
+import pytest
+from pydantic import BaseModel
+
+from mintpilot.core.errors import DeviceError, InputError
+from mintpilot.language.endpoint import EndpointModel, OutputMode
+
+KEY = "key-that-must-not-leak"
+
+
+class Answer(BaseModel):
+    yes: bool
+
+
+class Server:
+    """Answers each request with what ``respond`` makes of it; keeps what it was sent."""
+
+    def __init__(self) -> None:
+        self.requests: list[tuple[str, dict[str, str], dict[str, Any]]] = []
+        self.respond: Callable[[BaseHTTPRequestHandler], None] = lambda handler: reply(handler, completion("hello"))
+        server = self
+
+        class Handler(BaseHTTPRequestHandler):
+            def do_POST(self) -> None:
+                body = json.loads(self.rfile.read(int(self.headers["Content-Length"])))
+                server.requests.append((self.path, dict(self.headers), body))
+                server.respond(self)
+
+            def do_GET(self) -> None:
+                server.requests.append((self.path, dict(self.headers), {}))
+                server.respond(self)
+
+            def log_message(self, *_: object) -> None:
+                """Keeps the test's output clean."""
+
+        self._http = ThreadingHTTPServer(("127.0.0.1", 0), Handler)
+        self._http.daemon_threads = True
+        self.url = f"http://127.0.0.1:{self._http.server_address[1]}/v1"
+        threading.Thread(target=self._http.serve_forever, args=(0.01,), daemon=True).start()
+
+    def close(self) -> None:
+        self._http.shutdown()
+        self._http.server_close()
+
+
+def reply(handler: BaseHTTPRequestHandler, body: bytes, status: int = 200, **headers: str) -> None:
+    handler.send_response(status)
+    for name, value in headers.items():
+        handler.send_header(name, value)
+    handler.send_header("Content-Length", str(len(body)))
+    handler.end_headers()
+    handler.wfile.write(body)
+
+
+def completion(text: str) -> bytes:
+    answer = {"choices": [{"message": {"role": "assistant", "content": text}}], "usage": {"completion_tokens": 7}}
+    return json.dumps(answer).encode()
+
+
+@pytest.fixture
+def server() -> Iterator[Server]:
+    running = Server()
+    yield running
+    running.close()
+
+
+def model(server: Server, mode: OutputMode = OutputMode.PROMPTED) -> EndpointModel:
+    return EndpointModel(server.url, "tiny", mode=mode, environment={"MINTPILOT_LLM_KEY": KEY})
+
+
+def test_a_completion_comes_back_with_its_figures(server: Server) -> None:
+    answer = model(server).complete("Say hello.", schema=None, timeout_s=5)
+    assert (answer.text, answer.model, answer.tokens) == ("hello", "tiny", 7)
+    path, headers, body = server.requests[0]
+    assert path == "/v1/chat/completions"
+    assert headers["Authorization"] == f"Bearer {KEY}"
+    assert body["messages"] == [{"role": "user", "content": "Say hello."}]
+    assert body["temperature"] == 0
+
+
+def test_json_is_asked_for_in_the_way_that_the_server_knows(server: Server) -> None:
+    model(server).complete("Yes?", schema=Answer, timeout_s=5)
+    model(server, OutputMode.NATIVE).complete("Yes?", schema=Answer, timeout_s=5)
+    prompted, native = (body for _, _, body in server.requests)
+    assert '"yes"' in prompted["messages"][0]["content"]
+    assert "response_format" not in prompted
+    assert native["messages"][0]["content"] == "Yes?"
+    assert native["response_format"]["json_schema"]["schema"]["properties"].keys() == {"yes"}
+
+
+def _drip(handler: BaseHTTPRequestHandler) -> None:
+    """Sends a byte now and then: each read is quick, the whole never ends."""
+    handler.send_response(200)
+    handler.end_headers()
+    for _ in range(100):
+        handler.wfile.write(b" ")
+        handler.wfile.flush()
+        time.sleep(0.02)
+
+
+def _hang(handler: BaseHTTPRequestHandler) -> None:
+    time.sleep(2)
+
+
+@pytest.mark.parametrize(
+    ("respond", "message"),
+    [
+        (_hang, "did not answer within|cannot be reached"),
+        (_drip, "did not answer within"),
+        (lambda h: reply(h, b"not json"), "no chat completion"),
+        (lambda h: reply(h, b'{"choices": []}'), "no chat completion"),
+        (lambda h: reply(h, b"[]", 500), "answered 500"),
+        (lambda h: reply(h, b"", 401), "answered 401: check key"),
+        (lambda h: reply(h, b"x" * 1_000_010), "more than 1000000 bytes"),
+        (lambda h: h.wfile.write(b"garbage\r\n\r\n"), "cannot be reached"),
+    ],
+)
+def test_whatever_goes_wrong_is_one_error_without_the_key(
+    server: Server, respond: Callable[[BaseHTTPRequestHandler], None], message: str
+) -> None:
+    server.respond = respond
+    with pytest.raises(DeviceError, match=message) as caught:
+        model(server).complete("Hello?", schema=None, timeout_s=0.3)
+    assert KEY not in str(caught.value)
+    assert len(server.requests) == 1, "nothing is tried twice"
+
+
+def test_a_redirect_does_not_carry_the_key_away(server: Server) -> None:
+    other = Server()
+    server.respond = lambda h: reply(h, b"", 302, Location=f"{other.url}/chat/completions")
+    with pytest.raises(DeviceError, match="answered 302"):
+        model(server).complete("Hello?", schema=None, timeout_s=5)
+    assert other.requests == []
+    other.close()
+
+
+def test_nobody_listening_is_told(server: Server) -> None:
+    server.close()
+    with pytest.raises(DeviceError, match="cannot be reached"):
+        model(server).complete("Hello?", schema=None, timeout_s=2)
+
+
+@pytest.mark.parametrize(
+    ("url", "name", "message"),
+    [
+        ("", "tiny", "MINTPILOT_LLM_URL"),
+        ("ftp://host/v1", "tiny", "cannot be used"),
+        ("http://user:secret@host/v1", "tiny", "cannot be used"),
+        ("http://host/v1", "", "MINTPILOT_LLM_MODEL"),
+    ],
+)
+def test_a_bad_address_is_refused_at_once(url: str, name: str, message: str) -> None:
+    with pytest.raises(InputError, match=message) as caught:
+        EndpointModel(url, name, environment={})
+    assert "secret" not in str(caught.value)
+
+
+def test_the_environment_names_the_server(server: Server) -> None:
+    environment = {"MINTPILOT_LLM_URL": server.url, "MINTPILOT_LLM_MODEL": "tiny"}
+    assert EndpointModel(environment=environment).complete("?", schema=None, timeout_s=5).text == "hello"
+    assert "Authorization" not in server.requests[0][1]
