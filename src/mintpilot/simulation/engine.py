@@ -23,3 +23,23 @@ def load_mujoco() -> Any:
             f"the physics simulator MuJoCo cannot be loaded ({error}): install it with pip install 'mintpilot[sim]', "
             "or fly the kinematic simulator"
         ) from error
+
+
+def drawing_context(mujoco: Any, width: int, height: int) -> Any:
+    """A current OpenGL context of the kind that `MUJOCO_GL` names, also when MuJoCo was imported before that was set.
+
+    Raises:
+        MissingPartError: the machine has no such library.
+    """
+    kind = os.environ.get("MUJOCO_GL", "egl").lower()
+    try:
+        offscreen = kind in ("egl", "osmesa")
+        maker = importlib.import_module(f"mujoco.{kind}").GLContext if offscreen else mujoco.GLContext
+        context = maker(width, height)
+        context.make_current()
+    except Exception as error:  # the libraries below raise whatever they like
+        raise MissingPartError(
+            f"no picture can be drawn with MUJOCO_GL={kind} ({error}): install libegl1 and libgl1-mesa-dri, or "
+            "libosmesa6 and set MUJOCO_GL=osmesa, or fly the kinematic simulator"
+        ) from error
+    return context

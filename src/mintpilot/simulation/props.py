@@ -128,7 +128,7 @@ def _rack(maker: Maker, solid: Solid, rng: np.random.Generator) -> None:
         at = min(max(i * length / bays - 0.04, 0.0), length - 0.08)
         for side in (0.0, depth - 0.08):
             block((at, at + 0.08), (side, side + 0.08), (0.0, height), "upright")
-    for level in range(max(1, int((height - 0.1) / SHELF_GAP_M))):
+    for level in range(max(1, 1 + int((height - 0.3) / SHELF_GAP_M))):
         z = 0.12 + level * SHELF_GAP_M
         for side in (0.0, depth - 0.05):
             block((0.0, length), (side, side + 0.05), (z - 0.06, z + 0.04), "rack-beam")

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from mintpilot.core.errors import UnknownNameError
 from mintpilot.core.geometry import Floats
 from mintpilot.core.observation import CameraModel, Frame
-from mintpilot.simulation.engine import load_mujoco
+from mintpilot.simulation.engine import drawing_context, load_mujoco
 from mintpilot.simulation.props import CEILING_GROUP
 from mintpilot.simulation.scene import Scene
 from mintpilot.simulation.sensor import SensorSettings, corrupt
@@ -33,7 +33,7 @@ class SceneRenderer:
         sensor: faults of the depth sensor.
 
     Raises:
-        MissingPartError: MuJoCo is not installed.
+        MissingPartError: MuJoCo or a drawing library is not installed.
     """
 
     def __init__(
@@ -52,8 +52,7 @@ class SceneRenderer:
         self._rng = np.random.default_rng(seed)
         self._size = (width, height)
         self._sensor = sensor or SensorSettings()
-        self._gl: Any = self._mujoco.GLContext(max(width, 1280), max(height, 960))
-        self._gl.make_current()
+        self._gl: Any = drawing_context(self._mujoco, max(width, 1280), max(height, 960))
         self._context: Any = self._mujoco.MjrContext(model, self._mujoco.mjtFontScale.mjFONTSCALE_100.value)
         self._mujoco.mjr_setBuffer(self._mujoco.mjtFramebuffer.mjFB_OFFSCREEN.value, self._context)
         self._context.readDepthMap = self._mujoco.mjtDepthMap.mjDEPTH_ZEROFAR
