@@ -1,24 +1,65 @@
-"""Writes what is generated of the documentation: the command line's help and the mission file's schema.
+"""Writes what is generated of the documentation: the command line's help, the mission file's schema and its keys.
 
 python scripts/make_docs.py
 """
 
 from __future__ import annotations
 
+import json
 import os
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 from mintpilot.mission.reader import json_schema
+from mintpilot.mission.schema import MissionFile
 
 DOCS = Path(__file__).parents[1] / "docs"
+SCHEMA = MissionFile.model_json_schema()
+DEFINITIONS = SCHEMA["$defs"]
 COMMANDS = ("", "demo", "run", "plan", "check", "doctor")
 HEAD = """# The command line
 
 Written by `make docs`; do not edit. Results go to standard output, everything else to standard error, so that
 `--json` prints one object and nothing else.
 """
+
+MISSION_HEAD = """# The mission file
+
+Written by `make docs`; do not edit. A mission file is YAML; its first key is `mintpilot: 1`. `mintpilot check FILE`
+finds every mistake in it, and `docs/mission.schema.json` lets an editor help you write one. Whole examples are in
+`examples/`.
+
+Lengths are metres, times seconds, angles radians; x is east, y north, z up. Words are read as YAML 1.2 has it: `true`
+and `false` are truth values, `yes` and `no` are words. Anchors, aliases and tags are not read.
+
+Three kinds of worlds: a `scenario` by name, an explicit `scene`, or a `map` of your own. A ROS map keeps its free,
+occupied and unknown cells; only free ones are flown through, and the shade 205, which map_saver writes for unknown, is
+never free. The coordinates of a MovingAI map are those of its scenario files, times the resolution.
+"""
+TITLES = {
+    "ScenarioWorld": "world by scenario",
+    "SceneWorld": "world by scene",
+    "MapWorld": "world by map",
+    "SceneSpec": "scene",
+    "SolidSpec": "solid",
+    "SmokeSpec": "smoke",
+    "PersonSpec": "person",
+    "ClosedRoomSpec": "closed room",
+    "BoxSpec": "box",
+    "RegionSpec": "region",
+    "RoomSpec": "room",
+    "ObjectSpec": "object",
+    "GoalSpec": "goal",
+    "VehicleSpec": "vehicle",
+    "AskingSpec": "asking",
+    "SurveySpec": "survey",
+    "PriorsSpec": "priors",
+    "CorrelationSpec": "correlation",
+    "CombinationSpec": "combination",
+    "OperatorSpec": "operator",
+}
 
 
 def cli_page() -> str:
@@ -38,9 +79,71 @@ def cli_page() -> str:
     return "\n".join(parts)
 
 
+def mission_page() -> str:
+    """Every key of a mission file, table by table, in the order in which they are met."""
+    parts, waiting = [MISSION_HEAD, _table(SCHEMA)], _named(SCHEMA["properties"])
+    done: set[str] = set()
+    while waiting:
+        name = waiting.pop(0)
+        if name in done:
+            continue
+        done.add(name)
+        definition = DEFINITIONS[name]
+        parts.append(f"## {TITLES[name]}\n\n{definition['description']}\n\n{_table(definition)}")
+        waiting += _named(definition["properties"])
+    return "\n".join(parts)
+
+
+def _named(schema: object) -> list[str]:
+    """The parts that a schema refers to, in order."""
+    if isinstance(schema, dict):
+        own = [schema["$ref"].rsplit("/", 1)[1]] if "$ref" in schema else []
+        return own + [name for value in schema.values() for name in _named(value)]
+    return [name for value in schema for name in _named(value)] if isinstance(schema, list) else []
+
+
+def _table(definition: dict[str, Any]) -> str:
+    lines = ["| key | value | meaning |", "|---|---|---|"]
+    required = definition.get("required", [])
+    for key, value in definition["properties"].items():
+        default = "**required**" if key in required else _default(value.get("default"))
+        target = DEFINITIONS[_named(value)[0]] if "$ref" in value else {}
+        meaning = " ".join((value.get("description") or target.get("description", "")).split()).replace("|", "\\|")
+        lines.append(f"| `{key}` | {_kind(value)}{'; ' + default if default else ''} | {meaning} |")
+    return "\n".join(lines) + "\n"
+
+
+def _default(value: object) -> str:
+    return "" if value in (None, [], {}, "") or isinstance(value, dict) else f"default `{json.dumps(value)}`"
+
+
+def _kind(value: dict[str, Any]) -> str:
+    """What is written there, in a few words."""
+    if "$ref" in value:
+        return f"[{TITLES[_named(value)[0]]}](#{TITLES[_named(value)[0]].replace(' ', '-')})"
+    for union in ("anyOf", "oneOf"):
+        if union in value:
+            return " or ".join(dict.fromkeys(_kind(x) for x in value[union] if x.get("type") != "null"))
+    if "enum" in value:
+        return ", ".join(f"`{x}`" for x in value["enum"])
+    if "const" in value:
+        return f"`{value['const']}`"
+    if value["type"] == "array":
+        items = value.get("prefixItems")
+        return f"list of {len(items)} numbers" if items else f"list of {_kind(value['items'])}"
+    words = {"number": "number", "integer": "whole number", "boolean": "true or false", "string": "text"}
+    return words.get(value["type"], "mapping") + _bounds(value)
+
+
+def _bounds(value: dict[str, Any]) -> str:
+    signs = {"exclusiveMinimum": ">", "minimum": "≥", "exclusiveMaximum": "<", "maximum": "≤"}
+    return "".join(f" {sign} {value[key]:g}" for key, sign in signs.items() if key in value)
+
+
 def main() -> None:
-    """Writes both files."""
+    """Writes the three files."""
     (DOCS / "mission.schema.json").write_text(json_schema(), encoding="utf-8")
+    (DOCS / "mission-file.md").write_text(mission_page(), encoding="utf-8")
     (DOCS / "cli.md").write_text(cli_page(), encoding="utf-8")
 
 
