@@ -1,0 +1,62 @@
+"""The forms in which a model may answer. What comes back is checked again against the world: a form is no trust."""
+
+from __future__ import annotations
+
+import re
+from typing import TypeVar
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from mintpilot.core.query import Combine
+from mintpilot.language.answers import Reading
+
+_Form = TypeVar("_Form", bound=BaseModel)
+_LONGEST = 20_000
+
+
+class _Strict(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class CutPart(_Strict):
+    """``gap`` has ``value``; with ``attribute``, what the gap's phrase means has that attribute."""
+
+    gap: str = Field(max_length=200)
+    value: str = Field(max_length=200)
+    attribute: str = Field(default="", max_length=100)
+
+
+class Cut(_Strict):
+    """One proposed cut."""
+
+    parts: list[CutPart] = Field(min_length=1, max_length=3)
+    combine: Combine = Combine.ALL
+
+
+class Cuts(_Strict):
+    """What a model proposes to ask."""
+
+    cuts: list[Cut] = Field(max_length=20)
+
+
+class AnswerReading(_Strict):
+    """What a model takes an answer for."""
+
+    reading: Reading
+
+
+class Steps(_Strict):
+    """An instruction in the documented language, one step an entry."""
+
+    steps: list[str] = Field(min_length=1, max_length=12)
+
+
+def read_form(text: str, form: type[_Form]) -> _Form | None:
+    """The first JSON object in the text, if it has that form; None otherwise."""
+    found = re.search(r"\{.*\}", text[:_LONGEST], re.DOTALL)
+    if found is None:
+        return None
+    try:
+        return form.model_validate_json(found[0])
+    except (ValidationError, RecursionError):
+        return None
