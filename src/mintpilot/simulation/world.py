@@ -10,7 +10,7 @@ from __future__ import annotations
 from typing import Any
 
 from mintpilot.core.geometry import Box, Vec3
-from mintpilot.simulation import props
+from mintpilot.simulation import props, rooms
 from mintpilot.simulation.engine import load_mujoco
 from mintpilot.simulation.materials import add_materials
 from mintpilot.simulation.scene import Scene, Solid
@@ -47,10 +47,10 @@ def build_world(scene: Scene) -> Any:
             props.Maker(mujoco=mujoco, body=body, prefix=f"solid:{solid.id}"), solid, scene.seed * 1009 + index
         )
     for room in scene.rooms:
-        props.add_room(props.Maker(mujoco=mujoco, body=spec.worldbody, prefix=f"room:{room.id}"), room)
+        rooms.add_room(props.Maker(mujoco=mujoco, body=spec.worldbody, prefix=f"room:{room.id}"), room)
     persons = [*scene.persons, *(room.occupant for room in scene.rooms if room.occupant is not None)]
     for index, person in enumerate(persons):
-        props.add_person(spec, mujoco, person, scene.seed + index)
+        rooms.add_person(spec, mujoco, person, scene.seed + index)
     _add_cameras(spec, scene.volume)
     return spec
 
