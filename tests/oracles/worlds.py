@@ -139,7 +139,11 @@ class BruteForce:
                 return None
             legs.append((name, path))
             here = cell
+        # A diagonal step touches the two cells beside it: corners are not cut.
         cells = {c for _, path in legs for c in path}
+        for _, path in legs:
+            for (y, x), (v, u) in itertools.pairwise(path):
+                cells |= {(y, u), (v, x)}
         enters = frozenset(r for r, region in world.regions.items() if region & cells)
         skips = frozenset(r for r in world.rooms if r not in order)
         binds = (("target", goal),) if len(world.goals) > 1 else ()

@@ -6,8 +6,8 @@ from collections.abc import Collection, Sequence
 
 import numpy as np
 
-from mintpilot.core.geometry import Floats
-from mintpilot.core.mission import AskingSettings
+from mintpilot.core.geometry import Floats, Ints
+from mintpilot.core.mission import AskingSettings, CriticalityRule
 from mintpilot.core.ports import QueryObjective, QuerySituation
 from mintpilot.core.query import Query
 from mintpilot.core.tree import Mint, ScoredQuery
@@ -15,6 +15,8 @@ from mintpilot.elicitation.ease import effort
 from mintpilot.elicitation.objectives.information_gain import class_gain_bits
 from mintpilot.elicitation.objectives.value_of_information import regret_saved_s
 
+TOLERANCE = 1e-9
+"""Seconds that count as none."""
 SAME = 9
 """Decimal places to which scores are compared: rounding must not decide what is asked."""
 
@@ -28,11 +30,33 @@ def query_situation(queries: Sequence[Query], mint: Mint, regret_s: Floats, sett
         row[:] = query.truths(mint.belief).ravel()[support]
     return QuerySituation(
         probability=p / p.sum(),
-        class_of=mint.class_of.ravel()[support],
+        class_of=decisions(mint.class_of.ravel()[support], p, regret_s, settings),
         regret_s=regret_s,
         yes=yes,
         settings=settings,
     )
+
+
+def decisions(class_of: Ints, probability: Floats, regret_s: Floats, settings: AskingSettings) -> Ints:
+    """Plan classes as far as they must be told apart, 0 to m - 1, for each joint hypothesis (n,).
+
+    Two hypotheses whose leaves hold different plans need no question if one plan is within ``delta_c_s`` of the best under
+    both. The plan that is good for most of the mass takes all that it is good for, then the next one of the rest, and so
+    on. Under the paper's rule, where a different path counts even at equal cost, the classes of the tree stay as they are.
+    """
+    if settings.rule is CriticalityRule.PAPER or len(regret_s) <= int(class_of.max(initial=0)):
+        return class_of
+    good = regret_s <= settings.delta_c_s + TOLERANCE
+    merged = np.full(len(class_of), -1)
+    left = np.asarray(probability, float).copy()
+    for number in range(len(regret_s)):
+        best = int(np.argmax(np.round(good @ left, SAME)))
+        taken = good[best] & (merged < 0)
+        merged[taken] = number
+        left[taken] = 0.0
+        if (merged >= 0).all():
+            break
+    return merged
 
 
 def choose(

@@ -56,9 +56,12 @@ def regret_matrix(mint: Mint, settings: AskingSettings) -> Floats:
             best = np.minimum(best, row)
             if number < rows:
                 cost[number] = row
+    # Where nothing can be flown, only staying on the ground loses nothing.
     hopeless = np.isinf(best)
     lost: Floats = np.where(np.isinf(cost), settings.failure_price_s, cost - np.where(hopeless, 0.0, best))
-    lost[:, hopeless] = 0.0
+    for number, group in enumerate(mint.classes[:rows]):
+        if group.plan is None:
+            lost[number, hopeless] = 0.0
     return lost
 
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from mintpilot.core.errors import LimitError
-from mintpilot.core.geometry import Floats
+from mintpilot.core.geometry import Bools, Floats, Ints
 from mintpilot.core.ports import QueryObjective, QuerySituation
 
-MAX_STATES = 100_000
+MAX_STATES = 20_000
 """Default bound on the posterior supports that are looked at."""
 _ROUNDING = 1e-12
 
@@ -29,6 +29,8 @@ class Optimal(QueryObjective):
     def scores(self, situation: QuerySituation) -> Floats:
         """For each cut (q,), 1 / expected questions when it is asked first, itself counted; 0 for useless ones.
 
+        Exact for the best cut; for others it may be an upper bound, never above the best.
+
         Raises:
             LimitError: answers may be wrong, or more than ``max_states`` supports would be looked at.
         """
@@ -41,81 +43,98 @@ class Optimal(QueryObjective):
 
 
 class _Programme:
-    """The recursion. A support is the bits of an integer, one for each group of hypotheses that nothing tells apart."""
+    """The recursion, by branch and bound. A support is a row of truth values over the hypotheses."""
 
     def __init__(self, situation: QuerySituation, max_states: int) -> None:
         settings = situation.settings
         good = situation.regret_s <= settings.delta_c_s + 1e-9
-        alike = np.vstack([situation.yes, good, situation.class_of[None, :]])
-        groups, group_of = np.unique(alike, axis=1, return_inverse=True)
+        columns = np.vstack([situation.yes, good, situation.class_of[None, :]])
+        kinds, kind_of = np.unique(columns, axis=1, return_inverse=True)
         cuts = len(situation.yes)
-        self.mass = np.bincount(group_of.ravel(), weights=situation.probability, minlength=groups.shape[1]).tolist()
-        self.cut_of = [_bits(row) for row in groups[:cuts]]
-        self.cuts = sorted(set(self.cut_of))
-        self.good = [_bits(row) for row in groups[cuts:-1]]
-        self.classes = [_bits(groups[-1] == c) for c in np.unique(groups[-1])]
-        self.everything = (1 << groups.shape[1]) - 1
-        self.alpha = settings.alpha
+        self.mass: Floats = np.asarray(np.bincount(kind_of.ravel(), weights=situation.probability), float)
+        self.row_of: Ints
+        self.cuts, self.row_of = np.unique(kinds[:cuts].astype(bool), axis=0, return_inverse=True)
+        self.weighted_cuts = self.cuts * self.mass
+        self.good = kinds[cuts:-1].astype(float)
+        classes = np.unique(kinds[-1])
+        self.member = (kinds[-1][:, None] == classes[None, :]).astype(float)
+        self.enough = 1 - settings.alpha
+        # One plan may do for several classes: then bits of the class are not what has to be found out.
+        self.shared = bool((self.good[:, None, :] @ self.member > 0).sum(axis=2).max(initial=0) > 1)
+        self.slack = _fano(settings.alpha, len(classes))
         self.max_states = max_states
-        self.masses: dict[int, float] = {0: 0.0}
-        self.values: dict[int, float] = {}
+        self.values: dict[bytes, float] = {}
 
     def scores(self) -> Floats:
-        if self.may_stop(self.everything):
-            return np.zeros(len(self.cut_of))
-        found = {cut: self.after(self.everything, cut) for cut in self.cuts}
-        return np.array([1.0 / found[cut] if np.isfinite(found[cut]) else 0.0 for cut in self.cut_of])
+        everything = np.ones(self.mass.size, bool)
+        if self.bounds(everything[None, :])[0] == 0:
+            return np.zeros(len(self.row_of))
+        least, _ = self.search(everything)
+        worth = np.zeros(len(self.cuts))
+        for number, cut in enumerate(self.cuts):
+            if cut.any() and not cut.all():
+                worth[number] = 1.0 / least[np.packbits(cut).tobytes()]
+        return worth[self.row_of.ravel()]
 
-    def after(self, support: int, cut: int) -> float:
-        """Expected questions from here when this cut is asked now; infinite where it splits nothing."""
-        yes, no = support & cut, support & ~cut
-        if not yes or not no:
-            return float("inf")
-        share = self.mass_of(yes) / self.mass_of(support)
-        return 1.0 + share * self.value(yes) + (1 - share) * self.value(no)
-
-    def value(self, support: int) -> float:
+    def value(self, support: Bools) -> float:
         """Fewest expected questions from this support on."""
-        if support in self.values:
-            return self.values[support]
+        key = np.packbits(support).tobytes()
+        if key in self.values:
+            return self.values[key]
         if len(self.values) >= self.max_states:
             raise LimitError(
                 f"objective 'optimal' would look at more than {self.max_states} posterior supports; "
                 "use 'information-gain' or 'ec2', or raise the bound"
             )
-        best = 0.0 if self.may_stop(support) else self.best(support)
-        self.values[support] = best
+        best = 0.0 if self.bounds(support[None, :])[0] == 0 else self.search(support)[1]
+        self.values[key] = best
         return best
 
-    def best(self, support: int) -> float:
-        """The least over all cuts; those whose lower bound is no better than what is found are not followed."""
-        total = self.mass_of(support)
-        splits: dict[int, float] = {}
-        for cut in self.cuts:
-            yes = support & cut
-            if yes and yes != support and support ^ yes not in splits:
-                open_mass = sum(self.mass_of(s) for s in (yes, support ^ yes) if not self.may_stop(s))
-                splits[yes] = 1.0 + open_mass / total
+    def search(self, support: Bools) -> tuple[dict[bytes, float], float]:
+        """Expected questions for each cut asked first, by its yes part, and the least of them.
+
+        For cuts that are no better than the best one the figure may be a lower bound, but is never below the best.
+        """
+        yes = self.cuts & support
+        count = yes.sum(axis=1)
+        yes = np.unique(yes[(count > 0) & (count < support.sum())], axis=0)
+        no = support & ~yes
+        share = yes @ self.mass / self.mass[support].sum()
+        below_yes, below_no = self.bounds(yes), self.bounds(no)
+        least = 1.0 + share * below_yes + (1 - share) * below_no
         best = float("inf")
-        for yes, bound in sorted(splits.items(), key=lambda item: (item[1], item[0])):
-            if bound < best - _ROUNDING:
-                best = min(best, self.after(support, yes))
-        return best if splits else 0.0
+        # The lowest bound first; among equal bounds the most even cut.
+        for i in np.lexsort((np.abs(share - 0.5), np.round(least, 9))):
+            if least[i] >= best - _ROUNDING:
+                continue
+            least[i] += share[i] * (self.value(yes[i]) - below_yes[i])
+            if least[i] < best - _ROUNDING:
+                least[i] += (1 - share[i]) * (self.value(no[i]) - below_no[i])
+            best = min(best, float(least[i]))
+        keys = [np.packbits(row).tobytes() for row in yes]
+        return dict(zip(keys, least.tolist(), strict=True)), best if len(yes) else 0.0
 
-    def may_stop(self, support: int) -> bool:
-        """Whether one class holds enough of the mass, or one plan is good enough under all of it."""
-        if any(support & ~good == 0 for good in self.good):
-            return True
-        enough = (1 - self.alpha) * self.mass_of(support) - _ROUNDING
-        return any(self.mass_of(support & c) >= enough for c in self.classes)
+    def bounds(self, supports: Bools) -> Floats:
+        """For each support (s, hypotheses): 0 where asking may stop, else a lower bound on the expected questions."""
+        weight = supports * self.mass
+        total = weight.sum(axis=1)
+        by_class = weight @ self.member
+        covered = supports @ self.good.T >= supports.sum(axis=1)[:, None]
+        stop = (by_class.max(axis=1) >= self.enough * total - _ROUNDING) | covered.any(axis=1)
+        held = np.maximum(by_class.max(axis=1), (weight @ self.good.T).max(axis=1, initial=0.0))
+        # No support at which asking stops is heavier than this, and questions tell at most a bit each.
+        bits = np.log2(np.maximum(total * self.enough / np.maximum(held, _ROUNDING), 1.0))
+        if not self.shared:
+            share = by_class / total[:, None]
+            entropy = -(share * np.log2(np.where(share > 0, share, 1.0))).sum(axis=1)
+            bits = np.maximum(bits, entropy - self.slack)
+        least: Floats = np.where(stop, 0.0, np.maximum(1.0, bits))
+        return least
 
-    def mass_of(self, support: int) -> float:
-        """Probability of a support."""
-        if support not in self.masses:
-            lowest = support & -support
-            self.masses[support] = self.mass[lowest.bit_length() - 1] + self.mass_of(support ^ lowest)
-        return self.masses[support]
 
-
-def _bits(row: np.ndarray[tuple[int, ...], np.dtype[np.generic]]) -> int:
-    return sum(1 << i for i in np.flatnonzero(row).tolist())
+def _fano(alpha: float, classes: int) -> float:
+    """Most bits of the class that may be left where one class holds ``1 - alpha`` of the mass (Fano's inequality)."""
+    if alpha <= 0:
+        return 0.0
+    a = min(alpha, 0.5)
+    return float(-a * np.log2(a) - (1 - a) * np.log2(1 - a) + a * np.log2(max(classes - 1, 1)))
