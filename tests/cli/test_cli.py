@@ -20,12 +20,6 @@ BUILDING = ROOT / "examples" / "my-building" / "mission.yaml"
 PROGRAM = [sys.executable, "-c", "import sys; from mintpilot.cli.main import main; sys.exit(main())"]
 
 
-def call(*words: object, folder: Path | None = None, **more: object) -> subprocess.CompletedProcess[str]:
-    """The program in a process of its own, nobody at the terminal."""
-    command = [*PROGRAM, *map(str, words)]
-    return subprocess.run(command, cwd=folder, capture_output=True, text=True, stdin=subprocess.DEVNULL, **more)
-
-
 @pytest.fixture
 def bad_mission(tmp_path):
     path = tmp_path / "bad.yaml"
@@ -158,20 +152,21 @@ def test_plan_for_people(capsys):
         assert words in shown
 
 
-def test_run_writes_a_folder_and_prints_one_object(tmp_path):
+def test_run_writes_a_folder_and_prints_one_object(tmp_path, capsys):
     out = tmp_path / "run"
-    done = call("run", BUILDING, "--vehicle", "kinematic", "--seed", 3, "--out", out, "--json", folder=tmp_path)
-    record = json.loads(done.stdout)
-    assert done.returncode == (0 if record["outcome"] == "success" else 1), done.stderr
+    words = ["run", str(BUILDING), "--operator", "scripted", "--vehicle", "kinematic", "--out", str(out)]
+    code = main([*words, "--seed", "3", "--json"])
+    shown = capsys.readouterr()
+    record = json.loads(shown.out)
+    assert code == (0 if record["outcome"] == "success" else 1)
     assert record["seed"] == 3
     assert record["run_dir"] == str(out)
     assert {"questions", "gaps", "flight", "timings_s", "schema_version"} <= set(record)
     assert (out / "record.json").exists()
-    assert "Traceback" not in done.stderr
-    assert "\x1b[" not in done.stderr  # no terminal: plain lines
-    again = call("run", BUILDING, "--vehicle", "kinematic", "--out", out, folder=tmp_path)
-    assert again.returncode == ExitCode.FAILED_DEVICE
-    assert "holds a run already" in again.stderr
+    assert "Mission 'my-building'" in shown.err
+    assert "\x1b[" not in shown.err  # no terminal: plain lines
+    assert main(words) == ExitCode.FAILED_DEVICE
+    assert "holds a run already" in capsys.readouterr().err
 
 
 def test_an_unwritable_run_folder_ends_with_4(tmp_path, capsys):
@@ -183,14 +178,16 @@ def test_an_unwritable_run_folder_ends_with_4(tmp_path, capsys):
     assert "run folder" in capsys.readouterr().err
 
 
-def test_demo_prints_a_report(tmp_path):
-    done = call("demo", "--headless", "--vehicle", "kinematic", "--seed", 1, folder=tmp_path)
+def test_demo_prints_a_report(tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    code = main(["demo", "--headless", "--vehicle", "kinematic", "--seed", "1"])
+    shown = capsys.readouterr()
     (folder,) = (tmp_path / "runs").iterdir()
     outcome = json.loads((folder / "record.json").read_text())["outcome"]
-    assert done.returncode == (0 if outcome == "success" else 1), done.stderr
+    assert code == (0 if outcome == "success" else 1)
     for words in ("What it saw", "What it did not know", "What it asked", "What it flew"):
-        assert words in done.stdout
-    assert "Mission 'fire-warehouse'" in done.stderr
+        assert words in shown.out
+    assert "Mission 'fire-warehouse'" in shown.err
 
 
 def test_an_answer_may_come_through_a_pipe(tmp_path):
@@ -202,7 +199,7 @@ def test_an_answer_may_come_through_a_pipe(tmp_path):
     assert "The drone asks" in done.stderr
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("number", [signal.SIGINT, pytest.param(signal.SIGTERM, marks=pytest.mark.slow)])
 def test_ctrl_c_leaves_a_readable_run_folder(tmp_path, number):
     out = tmp_path / "run"
     command = [*PROGRAM, "run", str(BUILDING), "--operator", "terminal", "--vehicle", "kinematic", "--out", str(out)]
