@@ -173,7 +173,7 @@ def march_flame(
                 # How high the tongue at this place reaches; it changes slowly with height, so tongues stand upright.
                 tongue = _density(noise, (x + sway) * 13 + offset, (y - sway) * 13, z * 1.5 - 2.2 * time)
                 fine = _density(noise, x * 16 + offset, y * 16, z * 7 - 9.0 * time)
-                heat = 1.5 * (body**0.5 * (0.35 + 0.75 * tongue) - h) + 0.35 * (fine - 0.6)
+                heat = 1.5 * (body**0.5 * (0.16 + 0.95 * tongue / (0.5 + tongue)) - h) + 0.35 * (fine - 0.6)
                 heat = min(heat, 4.0 * (1.0 - h))
                 if heat <= 0.0:
                     continue
