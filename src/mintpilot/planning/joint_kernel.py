@@ -11,65 +11,56 @@ from mintpilot.planning.kernels import PER_EDGE, RING, SLACK, lowest_bit, redund
 from mintpilot.planning.lattice import NEAR, Words
 from mintpilot.planning.moves import NO_MOVE
 
-LABEL = np.dtype(
-    [
-        ("g", np.float64),
-        ("mask", np.uint64),
-        ("node", np.int32),
-        ("parent", np.int32),
-        ("below", np.int32),
-        ("next", np.int32),
-        ("last", np.int32),
-    ]
-)
-"""Cost so far, regions entered, where; the label it came from, the node's next label, the bucket's next, the move."""
+LABEL = np.dtype([("g", np.float64)] + [(n, np.int32) for n in ("set", "node", "parent", "below", "next", "last")])
+"""Cost so far; number of the set of regions entered; where; the label it came from, the node's next label, the
+bucket's next label; the move."""
 
-FOUND = np.dtype([("cost", np.float64), ("mask", np.uint64), ("label", np.int32)])
-"""A way to the goal that no other beats."""
+ENTERED = np.dtype([("mask", np.uint64), ("cap", np.float64)])
+"""A set of regions, and the least cost of a way found so far that enters no other region."""
+
+FOUND = np.dtype([("cost", np.float64), ("label", np.int64)])
+"""A way to the goal."""
+
+SMALL = -1
+SPENT = -2
 
 _DEAD = 64
 _FIRST = 32  # a node's `last` below it is still the move of the field search: the node has no label yet
 
 
 @njit(cache=True, error_model="numpy")
-def beaten(found: NDArray[np.void], count: int, cost: float, mask: np.uint64) -> bool:
-    """Whether a way at most as dear, through no other regions, is known. ``found`` is sorted by cost."""
-    for i in range(count):
-        if found[i].cost > cost + SLACK:
-            return False
-        if found[i].mask & ~mask == 0:
-            return True
-    return False
+def numbered(
+    mask: np.uint64, sets: NDArray[np.void], index: NDArray[np.int32], known: int, bound: float, best: Floats
+) -> int:
+    """The number of a set of regions in ``sets``; a new one is written at ``known``."""
+    slot = np.int64((mask * np.uint64(0x9E3779B97F4A7C15)) >> np.uint64(32)) & (index.size - 1)
+    while index[slot] >= 0:
+        if sets[index[slot]].mask == mask:
+            return index[slot]
+        slot = (slot + 1) & (index.size - 1)
+    index[slot] = known
+    sets[known].mask = mask
+    sets[known].cap = bound
+    for i in range(known):
+        if sets[i].mask & ~mask == 0:
+            sets[known].cap = min(sets[known].cap, best[i])
+    return known
 
 
 @njit(cache=True, error_model="numpy")
-def keep(found: NDArray[np.void], count: int, cost: float, mask: np.uint64, label: int) -> int:
-    """Adds a way, sorted by cost, and drops those that it beats; the new number of ways."""
-    rest = 0
-    for i in range(count):
-        if not (found[i].cost >= cost - SLACK and mask & ~found[i].mask == 0):
-            found[rest] = found[i]
-            rest += 1
-    i = rest
-    while i > 0 and found[i - 1].cost > cost:
-        found[i] = found[i - 1]
-        i -= 1
-    found[i].cost = cost
-    found[i].mask = mask
-    found[i].label = label
-    return rest + 1
-
-
-@njit(cache=True, error_model="numpy")
-def admit(pool: NDArray[np.void], cells: NDArray[np.void], to: int, cost: float, mask: np.uint64) -> bool:
-    """Whether no label of the node beats (cost, mask); labels that it beats are dropped."""
-    above = -1
+def admit(
+    pool: NDArray[np.void], cells: NDArray[np.void], sets: NDArray[np.void], to: int, cost: float, mask: np.uint64
+) -> int:
+    """Drops the labels of the node that (cost, mask) beats; 1 + number of comparisons, negative if one beats it."""
+    above, steps = -1, 1
     i = cells[to].last - _FIRST
     while i >= 0:
+        steps += 1
         below = pool[i].below
-        if pool[i].g <= cost + 1e-12 and pool[i].mask & ~mask == 0:
-            return False
-        if cost <= pool[i].g + 1e-12 and mask & ~pool[i].mask == 0:
+        other = sets[pool[i].set].mask
+        if pool[i].g <= cost + 1e-12 and other & ~mask == 0:
+            return -steps
+        if cost <= pool[i].g + 1e-12 and mask & ~other == 0:
             pool[i].last |= _DEAD
             if above < 0:
                 cells[to].last = _FIRST + below if below >= 0 else 0
@@ -78,7 +69,33 @@ def admit(pool: NDArray[np.void], cells: NDArray[np.void], to: int, cost: float,
         else:
             above = i
         i = below
-    return True
+    return steps
+
+
+@njit(cache=True, error_model="numpy")
+def append(
+    pool: NDArray[np.void],
+    cells: NDArray[np.void],
+    head: NDArray[np.int32],
+    new: int,
+    bucket: int,
+    g: float,
+    number: int,
+    node: int,
+    parent: int,
+    last: int,
+) -> None:
+    """Writes a new label, and puts it on its node's list and in its bucket."""
+    slot = bucket & (RING - 1)
+    pool[new].g = g
+    pool[new].set = number
+    pool[new].node = node
+    pool[new].parent = parent
+    pool[new].last = last
+    pool[new].below = max(cells[node].last - _FIRST, -1)
+    pool[new].next = head[slot]
+    cells[node].last = _FIRST + new
+    head[slot] = new
 
 
 @njit(cache=True, error_model="numpy")
@@ -95,28 +112,31 @@ def search_labels(
     start: int,
     goal: int,
     bound: float,
+    budget: int,
     cells: NDArray[np.void],
     tag: int,
     pool: NDArray[np.void],
+    sets: NDArray[np.void],
     found: NDArray[np.void],
 ) -> tuple[int, int, int]:
     """All ways from start to goal that are best under some set of blocked regions.
 
     ``cells`` holds, under ``tag``, the exact distances to the goal on the optimistic map of every node that may matter.
-    ``bound`` is the cost of the way that enters no region, or infinity; that way itself has label -1.
+    ``bound`` is the cost of the way that enters no region, or infinity; that way itself is not found again.
 
     Returns:
-        (number of ways in ``found``, or -1 when ``found`` or ``pool`` is too small; labels made; labels expanded).
+        (number of ways in ``found``, some of which others beat, or `SMALL` when a buffer is too small, or `SPENT` when
+        the budget of comparisons is spent; labels made; labels expanded).
     """
-    count = 0
-    if bound < np.inf:
-        count = keep(found, count, bound, np.uint64(0), -1)
     if cells[start].tag != tag:
-        return count, 0, 0
+        return 0, 0, 0
     f0 = cells[start].g
     head = np.full(RING, -1, np.int32)
-    append(pool, cells, head, 0, 0, 0.0, region[start], start, -1, NO_MOVE)
-    used, queued, bucket, expanded = 1, 1, 0, 0
+    index = np.full(2 * sets.size, -1, np.int32)
+    best = np.full(sets.size, np.inf)
+    numbered(region[start], sets, index, 0, bound, best)
+    append(pool, cells, head, 0, 0, 0.0, 0, start, -1, NO_MOVE)
+    count, known, used, queued, bucket, expanded, work = 0, 1, 1, 1, 0, 0, 0
     while queued > 0:
         label = head[bucket & (RING - 1)]
         if label < 0:
@@ -124,13 +144,22 @@ def search_labels(
             continue
         head[bucket & (RING - 1)] = pool[label].next
         queued -= 1
-        node, g, mask, last = pool[label].node, pool[label].g, pool[label].mask, pool[label].last
-        if last & _DEAD or beaten(found, count, g + cells[node].g, mask):
+        node, g, number, last = pool[label].node, pool[label].g, pool[label].set, pool[label].last
+        if last & _DEAD or sets[number].cap <= g + cells[node].g + SLACK:
             continue
-        if used + length.size > pool.size or count == found.size:
-            return -1, used, expanded
+        if used + length.size > pool.size or known + length.size > sets.size or count == found.size:
+            return SMALL, used, expanded
+        if work > budget:
+            return SPENT, used, expanded
+        mask = sets[number].mask
         if node == goal:
-            count = keep(found, count, g, mask, label)
+            found[count].cost = g
+            found[count].label = label
+            count += 1
+            best[number] = g
+            for i in range(known):
+                if mask & ~sets[i].mask == 0:
+                    sets[i].cap = min(sets[i].cap, g)
             continue
         expanded += 1
         ground = allowed[node] >> np.uint64(32)
@@ -148,45 +177,27 @@ def search_labels(
             to = node + offset[k]
             if cells[to].tag != tag:
                 continue
-            cost = g + length[k]
-            entered = mask
+            entered, into = mask, number
             if near:
                 for i in range(swept.shape[1]):
                     entered |= region[node + swept[k, i]]
+                if entered != mask:
+                    into = numbered(entered, sets, index, known, bound, best)
+                    if into == known:
+                        work += known
+                        known += 1
+            cost = g + length[k]
             f = cost + cells[to].g
-            if beaten(found, count, f, entered) or not admit(pool, cells, to, cost, entered):
+            if sets[into].cap <= f + SLACK:
                 continue
-            at = max(bucket, int((f - f0) * PER_EDGE))
-            append(pool, cells, head, used, at, cost, entered, to, label, k)
+            compared = admit(pool, cells, sets, to, cost, entered)
+            work += abs(compared)
+            if compared < 0:
+                continue
+            append(pool, cells, head, used, max(bucket, int((f - f0) * PER_EDGE)), cost, into, to, label, k)
             used += 1
             queued += 1
     return count, used, expanded
-
-
-@njit(cache=True, error_model="numpy")
-def append(
-    pool: NDArray[np.void],
-    cells: NDArray[np.void],
-    head: NDArray[np.int32],
-    new: int,
-    bucket: int,
-    g: float,
-    mask: np.uint64,
-    node: int,
-    parent: int,
-    last: int,
-) -> None:
-    """Writes a new label, and puts it on its node's list and in its bucket."""
-    slot = bucket & (RING - 1)
-    pool[new].g = g
-    pool[new].mask = mask
-    pool[new].node = node
-    pool[new].parent = parent
-    pool[new].last = last
-    pool[new].below = max(cells[node].last - _FIRST, -1)
-    pool[new].next = head[slot]
-    cells[node].last = _FIRST + new
-    head[slot] = new
 
 
 @njit(cache=True, error_model="numpy")

@@ -34,7 +34,9 @@ class Effort:
     """Bounds on the work of one joint search."""
 
     labels: int = 2_000_000
-    """Labels made before lazy branching takes over (40 bytes each)."""
+    """Labels made before lazy branching takes over (32 bytes each)."""
+    comparisons: int = 100_000_000
+    """Comparisons of labels before lazy branching takes over (a second or two)."""
     searches: int = 512
     """Searches of lazy branching before it gives up being complete."""
 
@@ -57,6 +59,7 @@ class JointSearch:
         self.labels = 0
         """Labels that the last search made."""
         self._pool: NDArray[np.void] = np.empty(min(1 << 14, self.effort.labels), joint_kernel.LABEL)
+        self._sets: NDArray[np.void] = np.empty(1 << 10, joint_kernel.ENTERED)
         self._found: NDArray[np.void] = np.empty(1 << 10, joint_kernel.FOUND)
         self._overlays: dict[tuple[int, ...], Overlay] = {}
 
@@ -141,7 +144,7 @@ class JointSearch:
     ) -> tuple[bool, list[Way[NDArray[np.int64]]]]:
         """The search over labels; needs the field of distances to the goal in the workspace."""
         lattice, work, moves = self.grid.lattice, self.grid.work, self.grid.lattice.moves
-        count = -1
+        count = joint_kernel.SMALL
         while count < 0:
             count, self.labels, self.grid.expanded = joint_kernel.search_labels(
                 overlay.near,
@@ -156,16 +159,18 @@ class JointSearch:
                 start,
                 goal,
                 bound,
+                self.effort.comparisons,
                 work.cells,
                 work.tag,
                 self._pool,
+                self._sets,
                 self._found,
             )
             if count < 0:
                 joint_kernel.forget(self._pool, self.labels, work.cells)
-                if not self._grow():
+                if count == joint_kernel.SPENT or not self._grow():
                     return False, []
-        labels = [int(i) for i in self._found["label"][:count] if i >= 0]
+        labels = [int(i) for i in self._found["label"][:count]]
         return True, [self._way(joint_kernel.trace(self._pool, i), overlay) for i in labels]
 
     def _grow(self) -> bool:
@@ -173,6 +178,7 @@ class JointSearch:
         if self._pool.size >= self.effort.labels:
             return False
         self._pool = np.empty(min(4 * self._pool.size, self.effort.labels), joint_kernel.LABEL)
+        self._sets = np.empty(4 * self._sets.size, joint_kernel.ENTERED)
         self._found = np.empty(4 * self._found.size, joint_kernel.FOUND)
         return True
 

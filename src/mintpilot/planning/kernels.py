@@ -54,7 +54,8 @@ lowest_bit: Callable[[np.uint64], int] = cast(Any, intrinsic)(_lowest_bit)
 @njit(cache=True, error_model="numpy")
 def redundant(ground: np.uint64, detour: NDArray[np.uint32], last: int, k: int) -> bool:
     """Whether the free surroundings make move k needless after the last one (`mintpilot.planning.moves`)."""
-    return ground & detour[last, k, 0] == detour[last, k, 0] or ground & detour[last, k, 1] == detour[last, k, 1]
+    one, other = detour[last, k, 0], detour[last, k, 1]
+    return bool(ground & one == one or ground & other == other)
 
 
 @njit(cache=True, error_model="numpy")

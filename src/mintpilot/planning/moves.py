@@ -16,6 +16,7 @@ entered yet count as not free in the test: the other way then enters no other re
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
@@ -121,7 +122,7 @@ def _axes(step: Step) -> int:
 
 
 def _length(step: Step) -> float:
-    return float(_axes(step)) ** 0.5
+    return math.sqrt(_axes(step))
 
 
 def _bits(numbers: Iterable[int]) -> int:
