@@ -238,6 +238,10 @@ def test_the_order_of_gaps_and_values_never_matters(problem: PlanningProblem, se
         assert (a and (a.signature, a.relies_on)) == (b and (b.signature, b.relies_on))
 
 
+def is_free(free: np.ndarray, cell: tuple) -> bool:
+    return all(0 <= i < n for i, n in zip(cell, free.shape, strict=True)) and bool(free[cell])
+
+
 def dijkstra_path(free: np.ndarray, start: tuple, goal: tuple):
     """A black box: a path by walking down an all-pairs table of the oracle."""
     table = all_pairs(free)

@@ -36,7 +36,7 @@ def numbered(
     slot = np.int64((mask * np.uint64(0x9E3779B97F4A7C15)) >> np.uint64(32)) & (index.size - 1)
     while index[slot] >= 0:
         if sets[index[slot]].mask == mask:
-            return index[slot]
+            return int(index[slot])
         slot = (slot + 1) & (index.size - 1)
     index[slot] = known
     sets[known].mask = mask
