@@ -1,0 +1,92 @@
+"""Shut doors: brown leaves of a door's size, upright and flat, standing on the floor."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.ndimage import binary_closing, binary_dilation, label
+
+from mintpilot.core.geometry import Bools, Floats
+from mintpilot.core.observation import Attribute, Detection
+from mintpilot.perception.boxes import box_around, pixel_box, touches_border
+from mintpilot.perception.settings import PerceptionSettings
+from mintpilot.perception.view import View, as_floats
+
+HEIGHT_M = (1.7, 2.3)
+WIDTH_M = (0.6, 1.35)
+THICK_M = 0.16
+LEAST_PIXELS = 60
+IN_WALL = 0.5
+"""Share of what is right beside a leaf that must be wall."""
+
+
+def brown_mask(view: View) -> Bools:
+    """Pixels of the colour of wood or brown paint."""
+    hue, value = view.hue, view.value
+    brown = (hue > 14) & (hue < 42) & (view.saturation > 0.28) & (value > 30) & (value < 190)
+    return np.asarray(brown & view.valid, bool)
+
+
+def find_doors(view: View, index: int, settings: PerceptionSettings) -> list[Detection]:
+    """One detection per brown patch that has the shape of a leaf; a pane or a handle in it does not matter."""
+    near = view.valid & (view.depth_m < settings.reach_m)
+    mask = np.asarray(binary_closing(brown_mask(view), iterations=2), bool) & near
+    labels, count = label(mask)
+    sizes = np.bincount(labels.ravel(), minlength=count + 1)
+    found = []
+    for number in np.flatnonzero(sizes >= LEAST_PIXELS):
+        if number == 0:
+            continue
+        patch = labels == number
+        door = _as_door(view, patch, index, settings)
+        if door is not None:
+            found.append(door)
+    return found
+
+
+def _as_door(view: View, patch: Bools, index: int, settings: PerceptionSettings) -> Detection | None:
+    points = as_floats(view.points_m[patch])
+    normal, thick, wide = _flatness(points)
+    noise = float(np.median(view.sigma_m[patch]))
+    low, high = np.percentile(points[:, 2], (2, 98)) - settings.floor_m
+    pixels = pixel_box(patch)
+    if touches_border(pixels, patch.shape) or not (low < 0.4 and HEIGHT_M[0] <= high <= HEIGHT_M[1]):
+        return None
+    if not (WIDTH_M[0] <= wide <= WIDTH_M[1] and thick < THICK_M + 2.5 * noise) or abs(float(normal[2])) > 0.2:
+        return None
+    # A patch of goods on a shelf is brown too, but it has gaps, and no wall around it.
+    rows = patch.any(axis=1)[pixels[1] : pixels[3]].mean()
+    if rows < 0.97 or _wall_around(view, patch, points, normal) < IN_WALL:
+        return None
+    return Detection(
+        label="door",
+        score=0.85,
+        box_m=box_around(points),
+        attributes=(Attribute(name="colour", value="brown"),),
+        pixels=pixels,
+        points_m=points[:: max(1, len(points) // 400)],
+        frame_index=index,
+    )
+
+
+def _wall_around(view: View, patch: Bools, points: Floats, normal: Floats) -> float:
+    """Share of the pixels right beside a patch, above the floor, that lie in its plane."""
+    beside = binary_dilation(patch, structure=np.ones((1, 3), bool), iterations=8) & ~patch & view.valid
+    beside &= view.points_m[..., 2] > 0.3
+    if not beside.any():
+        return 0.0
+    off = np.abs((as_floats(view.points_m[beside]) - points.mean(axis=0)) @ normal)
+    return float((off < 0.15 + 3 * view.sigma_m[beside]).mean())
+
+
+def _flatness(points: Floats) -> tuple[Floats, float, float]:
+    """Normal (3,) of the plane nearest to the points; how thick (std) and how wide (level extent) they are, metres."""
+    centred = points - points.mean(axis=0)
+    vectors: Floats = np.linalg.eigh(centred.T @ centred)[1]
+    normal = vectors[:, 0]
+    along = np.array([-normal[1], normal[0], 0.0])
+    length = float(np.linalg.norm(along))
+    if length < 1e-6:
+        return normal, np.inf, np.inf
+    spread = centred @ (along / length)
+    lo, hi = np.percentile(spread, (1.5, 98.5))
+    return normal, float((centred @ normal).std()), float(hi - lo)
