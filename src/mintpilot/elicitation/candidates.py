@@ -7,22 +7,26 @@ hypotheses alike are merged; the one that is easiest to say stays.
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator
+from dataclasses import dataclass
+from functools import lru_cache
 from itertools import combinations
 
 import numpy as np
 
-from mintpilot.core.gap import PASSABLE, PRESENT, GapKind, KnowledgeGap
-from mintpilot.core.geometry import Vec3
+from mintpilot.core.gap import PASSABLE, PRESENT, GapKind, Joint, KnowledgeGap
+from mintpilot.core.geometry import Bools, Vec3, frozen
 from mintpilot.core.query import Combine, Literal, Query, Saying, SayingKind
 from mintpilot.core.tree import Mint
-from mintpilot.elicitation.ease import effort
+from mintpilot.elicitation.ease import ease
 from mintpilot.elicitation.referents import referent_literals
 from mintpilot.elicitation.sentences import is_sayable
 
 MAX_TOGETHER = 3
 """Most gaps in one any-of or all-of cut."""
-MAX_CUTS = 2000
+MAX_CUTS = 1000
 """Bound on the cuts that are looked at, easiest first."""
+MAX_KEPT = 1 << 20
+"""Tables of answers with more cells than this are made anew each time."""
 MAX_CELLS = 1 << 24
 """Bound on cuts times joint hypotheses."""
 
@@ -63,27 +67,46 @@ def candidate_queries(
         start_m: where the drone is, metres.
         refused: ids of cuts not to be asked; nor are others that divide the hypotheses alike.
     """
-    support = mint.support
-    gaps = {g.id: g for g in mint.belief.gaps}
-    literals = {g.id: gap_literals(g, start_m) for g in mint.belief.gaps}
-    queries = sorted(set(_queries(literals, mint.belief.gaps)), key=lambda q: (effort(q), q.id))
+    support, language = mint.support, _language(mint.belief.gaps, start_m)
     most = max(1, min(MAX_CUTS, MAX_CELLS // max(1, support.size)))
-    kept: dict[bytes, Query] = {}
-    barred: set[bytes] = set()
-    for query in queries:
-        if len(kept) >= most:
-            break
-        if len(query.literals) > 1 and not is_sayable(query, gaps):
-            continue
-        row = query.truths(mint.belief).ravel()[support]
-        if row.all() or not row.any():
-            continue
-        # A cut and its opposite divide alike.
-        key = np.packbits(row ^ row[0]).tobytes()
-        if query.id in refused:
-            barred.add(key)
-        kept.setdefault(key, query)
-    return tuple(query for key, query in kept.items() if key not in barred)
+    looked_at = language.queries[: 4 * most]
+    rows = language.truths(mint.belief, len(looked_at))[:, support]
+    # A cut and its opposite divide alike; of those that divide alike the first one is the easiest.
+    keys = np.packbits(rows ^ rows[:, :1], axis=1)
+    _, first, key_of = np.unique(keys, axis=0, return_index=True, return_inverse=True)
+    barred = {key_of.ravel()[i] for i, query in enumerate(looked_at) if refused and query.id in refused}
+    telling = rows.any(axis=1) & ~rows.all(axis=1)
+    kept = sorted(i for key, i in enumerate(first.tolist()) if telling[i] and key not in barred)
+    return tuple(looked_at[i] for i in kept[:most])
+
+
+@dataclass(frozen=True, eq=False)
+class _Language:
+    """Every cut that can be said about some gaps, easiest first, and their answers where that is a small table."""
+
+    queries: tuple[Query, ...]
+    tables: dict[int, Bools]
+
+    def truths(self, joint: Joint, count: int) -> Bools:
+        """True answers to the first cuts (count, n) under each joint hypothesis, flattened."""
+        if count not in self.tables:
+            table: Bools = np.zeros((count, joint.probability.size), bool)
+            for row, query in zip(table, self.queries, strict=False):
+                row[:] = query.truths(joint).ravel()
+            if table.size > MAX_KEPT:
+                return table
+            frozen(table)
+            self.tables[count] = table
+        return self.tables[count]
+
+
+@lru_cache(maxsize=64)
+def _language(gaps: tuple[KnowledgeGap, ...], start_m: Vec3 | None) -> _Language:
+    literals = {g.id: gap_literals(g, start_m) for g in gaps}
+    known = {g.id: g for g in gaps}
+    ranked = sorted(set(_queries(literals, gaps)), key=ease)
+    sayable = tuple(q for q in ranked if len(q.literals) == 1 or is_sayable(q, known))
+    return _Language(queries=sayable, tables={})
 
 
 def _queries(literals: dict[str, tuple[Literal, ...]], gaps: Iterable[KnowledgeGap]) -> Iterator[Query]:

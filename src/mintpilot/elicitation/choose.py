@@ -11,9 +11,10 @@ from mintpilot.core.mission import AskingSettings, CriticalityRule
 from mintpilot.core.ports import QueryObjective, QuerySituation
 from mintpilot.core.query import Query
 from mintpilot.core.tree import Mint, ScoredQuery
-from mintpilot.elicitation.ease import effort
+from mintpilot.elicitation.ease import ease
 from mintpilot.elicitation.objectives.information_gain import class_gain_bits
 from mintpilot.elicitation.objectives.value_of_information import regret_saved_s
+from mintpilot.elicitation.truth import truth_row
 
 TOLERANCE = 1e-9
 """Seconds that count as none."""
@@ -27,7 +28,7 @@ def query_situation(queries: Sequence[Query], mint: Mint, regret_s: Floats, sett
     p = mint.belief.probability.ravel()[support]
     yes = np.zeros((len(queries), support.size), bool)
     for row, query in zip(yes, queries, strict=True):
-        row[:] = query.truths(mint.belief).ravel()[support]
+        row[:] = truth_row(query, mint.belief)[support]
     return QuerySituation(
         probability=p / p.sum(),
         class_of=decisions(mint.class_of.ravel()[support], p, regret_s, settings),
@@ -40,9 +41,9 @@ def query_situation(queries: Sequence[Query], mint: Mint, regret_s: Floats, sett
 def decisions(class_of: Ints, probability: Floats, regret_s: Floats, settings: AskingSettings) -> Ints:
     """Plan classes as far as they must be told apart, 0 to m - 1, for each joint hypothesis (n,).
 
-    Two hypotheses whose leaves hold different plans need no question if one plan is within ``delta_c_s`` of the best under
-    both. The plan that is good for most of the mass takes all that it is good for, then the next one of the rest, and so
-    on. Under the paper's rule, where a different path counts even at equal cost, the classes of the tree stay as they are.
+    Two hypotheses whose leaves hold different plans need no question if one plan is within ``delta_c_s`` of the best
+    under both. The plan that is good for most of the mass takes all that it is good for, then the next one of the rest,
+    and so on. Under the paper's rule, where another path counts even at equal cost, the tree's classes stay.
     """
     if settings.rule is CriticalityRule.PAPER or len(regret_s) <= int(class_of.max(initial=0)):
         return class_of
@@ -110,7 +111,7 @@ def choose(
 
 def rank(scored: Collection[ScoredQuery]) -> tuple[ScoredQuery, ...]:
     """Best first; ties by ease of saying, then by id."""
-    return tuple(sorted(scored, key=lambda s: (-round(s.score, SAME), effort(s.query), s.query.id)))
+    return tuple(sorted(scored, key=lambda s: (-round(s.score, SAME), *ease(s.query))))
 
 
 def merge(*lists: Collection[ScoredQuery]) -> tuple[ScoredQuery, ...]:

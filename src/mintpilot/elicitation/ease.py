@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 from mintpilot.core.query import Query, SayingKind
 
 _EFFORT = {
@@ -19,3 +21,9 @@ def effort(query: Query) -> float:
     and one more for the joining word.
     """
     return sum(_EFFORT[x.saying.kind] for x in query.literals) + (len(query.literals) - 1)
+
+
+@lru_cache(maxsize=1 << 14)
+def ease(query: Query) -> tuple[float, str]:
+    """Orders cuts: easier ones first, then by id."""
+    return effort(query), query.id

@@ -1,0 +1,148 @@
+"""Random worlds and the exact expectation of a way of asking over everything that may be true in them."""
+
+from __future__ import annotations
+
+import copy
+import itertools
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from mintpilot.core.errors import InfeasibleError
+from mintpilot.core.gap import BLOCKED, PASSABLE, Assumptions, GapKind, KnowledgeGap
+from mintpilot.core.geometry import GridFrame
+from mintpilot.core.mission import AskingSettings
+from mintpilot.core.observation import RegionKind
+from mintpilot.core.plan import PlanningProblem, Site, Stop, VehicleLimits
+from mintpilot.core.ports import Ask, Fly, PlanSpace, Situation, Strategy
+from mintpilot.core.query import Combine, Query, Reply
+from mintpilot.core.semantic_map import Cell, Region, SemanticMap
+from mintpilot.core.task import Action
+from mintpilot.elicitation.objectives import query_objective
+from mintpilot.planning.task_planner import GridPlanner
+from mintpilot.reasoning.belief import condition, prior_belief
+from mintpilot.reasoning.metrics import impact_metric
+
+SHAPE = (24, 40)
+LIMITS = VehicleLimits(radius_m=0.01, margin_m=0.0, cruise_mps=1.0)
+TOLERANCE_S = 1e-6
+
+
+@dataclass(frozen=True, kw_only=True)
+class Expectation:
+    """What to expect of one way of asking in one world."""
+
+    questions: float
+    worse: float
+    """Probability of flying a plan that costs more than delta_c above the omniscient planner's."""
+
+
+def random_problem(rng: np.random.Generator, regions: int) -> PlanningProblem:
+    """A hall with scattered obstacles and uncertain regions; drawn again until it can be flown."""
+    while True:
+        problem = _draw(rng, regions)
+        try:
+            GridPlanner().open(problem)
+        except InfeasibleError:
+            continue
+        return problem
+
+
+def first_situation(problem: PlanningProblem, settings: AskingSettings) -> Situation:
+    """Before the first question."""
+    return Situation(
+        problem=problem,
+        space=GridPlanner().open(problem),
+        belief=prior_belief(problem.gaps),
+        confirmed=frozenset(),
+        withdrawn=frozenset(),
+        asked=(),
+        silent=False,
+        settings=settings,
+        metric=impact_metric(settings.impact_metric),
+        objective=query_objective(settings.objective),
+    )
+
+
+def expectation(strategy: Strategy, situation: Situation) -> Expectation:
+    """Follows every answer, weighted by its probability; answers are true."""
+    gaps = situation.problem.gaps
+    truths = []
+    for values in itertools.product(*(g.values for g in gaps)):
+        p = math.prod(g.prior[g.values.index(v)] for g, v in zip(gaps, values, strict=True))
+        truths.append((dict(zip((g.id for g in gaps), values, strict=True)), p))
+    return _follow(strategy, situation, truths)
+
+
+def answered(situation: Situation, query: Query, yes: bool) -> Situation:
+    """The situation after an answer, as the loop makes it."""
+    update = condition(situation.belief, query, Reply.YES if yes else Reply.NO, situation.settings.answer_error)
+    outright = len(query.literals) == 1 or query.combine is Combine.ALL
+    named = {x.gap for x in query.literals if x.values == frozenset({PASSABLE})} if yes and outright else set()
+    return replace(
+        situation,
+        belief=update.belief,
+        confirmed=situation.confirmed | named,
+        asked=(*situation.asked, (query, yes)),
+    )
+
+
+def _follow(strategy: Strategy, situation: Situation, truths: Sequence[tuple[Mapping[str, str], float]]) -> Expectation:
+    decision = strategy.decide(situation)
+    if isinstance(decision, Fly):
+        worse = sum(p for truth, p in truths if _is_worse(decision, situation.space, truth, situation.settings))
+        return Expectation(questions=0.0, worse=worse)
+    assert isinstance(decision, Ask)
+    query = decision.scored.query
+    total = Expectation(questions=sum(p for _, p in truths), worse=0.0)
+    for yes in (True, False):
+        left = [(truth, p) for truth, p in truths if query.holds(truth) is yes]
+        if left:
+            # Some ways of asking remember what they found: each branch goes on with its own memory.
+            part = _follow(copy.deepcopy(strategy), answered(situation, query, yes), left)
+            total = Expectation(questions=total.questions + part.questions, worse=total.worse + part.worse)
+    return total
+
+
+def _is_worse(decision: Fly, space: PlanSpace, truth: Mapping[str, str], settings: AskingSettings) -> bool:
+    best = space.optimistic(Assumptions.exactly(truth))
+    if decision.plan is None or best is None:
+        return best is not None
+    return decision.plan.cost_s > best.cost_s + settings.delta_c_s + TOLERANCE_S
+
+
+def _draw(rng: np.random.Generator, count: int) -> PlanningProblem:
+    height, width = SHAPE
+    cells = np.where(rng.random((1, *SHAPE)) < 0.15, Cell.OCCUPIED, Cell.FREE).astype(np.uint8)
+    start, goal = (0, int(rng.integers(height)), 0), (0, int(rng.integers(height)), width - 1)
+    cells[start] = cells[goal] = Cell.FREE
+    frame = GridFrame(origin_m=(0.0, 0.0, 0.0), resolution_m=1.0, shape=(1, *SHAPE))
+    regions, gaps = [], []
+    for i in range(count):
+        tall, wide = int(rng.integers(4, 15)), int(rng.integers(2, 4))
+        y, x = int(rng.integers(height - tall + 1)), int(rng.integers(2, width - 2 - wide))
+        inside = np.zeros((1, *SHAPE), bool)
+        inside[0, y : y + tall, x : x + wide] = True
+        regions.append(Region(id=f"r{i}", kind=RegionKind.SMOKE, cells=np.flatnonzero(inside).astype(np.int64)))
+        gaps.append(
+            KnowledgeGap(
+                id=f"obstacle:r{i}",
+                kind=GapKind.OBSTACLE,
+                subject=f"r{i}",
+                description=f"the grey smoke number {i + 1}",
+                values=(PASSABLE, BLOCKED),
+                prior=(0.5, 0.5),
+                position_m=(x + wide / 2, y + tall / 2, 0.5),
+            )
+        )
+    (ax, ay, az), (bx, by, bz) = (frame.centres_of([cell])[0].tolist() for cell in (start, goal))
+    stop = Stop(id="go", action=Action.GO, sites=(Site(position_m=(bx, by, bz), reach_m=0.1),), dwell_s=0.0)
+    return PlanningProblem(
+        map=SemanticMap(frame=frame, cells=cells, regions=tuple(regions)),
+        start_m=(ax, ay, az),
+        stops=(stop,),
+        gaps=tuple(gaps),
+        limits=LIMITS,
+    )
