@@ -44,6 +44,61 @@ BOX: dict[str, str] = {
     "not sure": "unsure", "which one?": "unsure",
     "yes, the blue one": "other", "the red or the blue one": "other", "the small one": "other",
 }  # fmt: skip
+SMOKE |= {
+    "yes please go": "yes", "go right ahead": "yes", "you may proceed": "yes", "yes, it is only steam": "yes",
+    "that should be okay, yes": "unsure", "green light": "yes", "permission granted": "yes", "yes definitely": "yes",
+    "sure, fly through": "yes", "yes, no danger there": "yes", "all good, carry on": "yes", "it is, yes": "yes",
+    "I can confirm that": "yes", "yup, safe": "yes", "it's clear, go": "yes", "okay do it": "yes",
+    "no, that is chlorine": "no", "do not fly into that": "no", "it would kill the drone": "no", "no chance": "no",
+    "that's a no from me": "no", "don't go in there": "no", "hell no": "no", "it's poisonous gas": "no",
+    "please fly around it": "no", "go the other way": "no", "stay clear of it": "no", "that smoke is deadly": "no",
+    "I would avoid it": "no", "no it isn't": "no", "not safe at all": "no", "denied": "no", "beats me": "unsure",
+    "I have no way of knowing": "unsure", "can you show me the picture again?": "other", "hmm, tough one": "unsure",
+    "I really could not say": "unsure", "give me a minute": "unsure", "ask somebody else": "unsure",
+    "I'd need a closer look": "unsure", "it might be if the wind turns": "unsure",
+    "my sister lives near there": "other", "seventeen": "other", "safe for whom?": "other", "fly home now": "command",
+    "stop right there": "command", "abort abort": "command", "cancel the mission please": "command",
+}  # fmt: skip
+ROOM |= {
+    "yes, my colleague is still in there": "yes", "two people went in": "yes", "I heard screaming from inside": "yes",
+    "there's a woman trapped": "yes", "no, they all left": "no", "that room has been empty for years": "no",
+    "nobody's home": "no", "haven't checked": "unsure", "couldn't tell you": "unsure",
+}  # fmt: skip
+BOX |= {
+    "that's right, the red one": "yes", "the little red box, yes": "yes", "you got it": "yes",
+    "precisely that one": "yes", "no, blue": "no", "the other one": "no", "nope, the bigger one": "no",
+    "it's the large blue one": "no", "wrong colour": "no", "not red": "no", "I don't remember": "unsure",
+    "could be either": "unsure", "they all look the same to me": "other", "is there a third one?": "other",
+    "take both": "other",
+}  # fmt: skip
+SMOKE |= {
+    "yes, take it": "yes", "yes, we checked it ten minutes ago": "yes", "it is only water vapour, fly through": "yes",
+    "right, go through it": "yes", "okay, you can enter": "yes", "totally fine": "yes",
+    "yes, clear to proceed": "yes", "that one is harmless": "yes", "sure": "yes", "yeah, no issue": "yes",
+    "I'm positive, yes": "yes", "correct, it is safe": "yes", "fine by me": "yes", "you're good": "yes",
+    "yes it's been tested": "yes", "absolutely, proceed": "yes", "no, please take the long way round": "no",
+    "not recommended": "no", "that's too risky": "no", "definitely not": "no", "the sensors say it is toxic": "no",
+    "I wouldn't": "no", "no no no": "no", "you must not go in": "no", "no, wait outside": "unsure",
+    "that stuff is harmful": "no", "don't even think about it": "no", "it's burning plastic, so no": "no",
+    "it is not passable": "no", "no, it smells of gas": "no", "stay out of there": "no", "that is a bad idea": "no",
+    "I am not on site": "unsure", "impossible to say": "other", "it's unclear": "other",
+    "don't know, sorry": "unsure", "can you repeat?": "unsure", "I can't see that from here": "unsure",
+    "let me ask the fire chief": "other", "um": "other", "only after the fan has run": "other",
+    "lunch is at noon": "other", "yes or no?": "other", "yes unless it turns black": "other", "halt": "command",
+    "come home": "command", "abort now": "command", "please return to the start": "command",
+}  # fmt: skip
+ROOM |= {
+    "I saw two people inside": "yes", "yes, at least one": "yes", "someone is trapped there": "yes",
+    "there are people in it": "yes", "no, it's vacant": "no", "nobody was in there": "no",
+    "it's empty, I checked": "no", "no one": "no", "we haven't looked": "unsure", "impossible to tell": "other",
+    "ask the guard": "other",
+}  # fmt: skip
+BOX |= {
+    "red is right": "yes", "yes that is the one I mean": "yes", "of course the red one": "yes",
+    "the small red": "yes", "blue, not red": "no", "no, a large one": "no", "none of these": "no",
+    "that's not it": "no", "not that box": "no", "any of them": "other", "I forgot": "unsure",
+    "whichever is closer": "other", "what boxes?": "unsure",
+}  # fmt: skip
 ALSO: dict[str, set[str]] = {
     "not the red one, the blue one": {"box-2", "box-3"},
     "no, I mean the big blue box": {"box-2"},

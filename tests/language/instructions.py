@@ -63,6 +63,44 @@ PARAPHRASES: dict[str, tuple[str, ...]] = {
 }
 """The same said in other words."""
 
+MORE: dict[str, tuple[str, ...]] = {
+    "Please collect the medicine from the box and deliver it to the wounded man": (
+        "pick box contents=medicine",
+        "deliver person condition=injured",
+    ),
+    "Grab the medicine out of the box and fly it to the injured person": (
+        "pick box contents=medicine",
+        "deliver person condition=injured",
+    ),
+    "Fetch the medicine from the red box, then hand it to the injured woman": (
+        "pick box colour=red contents=medicine",
+        "deliver person condition=injured",
+    ),
+    "Find the wounded person in the warehouse and make sure no one else is hurt": (
+        "go person condition=injured",
+        "people",
+    ),
+    "Locate the victim, then check whether there is anybody else inside": ("go person", "people"),
+    "Search the hall for people": ("go person condition=injured *", "people"),
+    "Find out if anyone is injured": ("go person condition=injured *", "people"),
+    "Check each room on the left": ("look room side=left *",),
+    "Search every room and avoid the smoke": ("look room *", "avoid smoke"),
+    "Look inside the room": ("look room",),
+    "Go to the black box near the fire": ("go box colour=black near=the fire",),
+    "Go to point 4, 5, 2": ("go @4,5,2",),
+    "Move to x 1 y 2": ("go @1,2,1.5",),
+    "Pick the red box up and carry it to the rack": ("pick box colour=red", "deliver rack"),
+    "Fly to the tallest pillar, if possible without entering the smoke": ("go pillar extreme=tallest", "spare smoke"),
+    "Hover above the blue box for 20 seconds": ("go box colour=blue dwell=20",),
+    "Go to the rack on your right": ("go rack side=right",),
+    "Take the nearest box to the injured person and return home": (
+        "pick box extreme=nearest",
+        "deliver person condition=injured",
+        "go @0,0,1",
+    ),
+}
+"""Further ones."""
+
 REFUSED: dict[str, str] = {
     "": "no words",
     "12 34": "no words",

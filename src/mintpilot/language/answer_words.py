@@ -21,6 +21,8 @@ class Sign(StrEnum):
     BLOCKED = "blocked"
     PRESENT = "present"
     ABSENT = "absent"
+    CLEAR = "clear"
+    """Of smoke: passable. Of a room: empty."""
     NOISE = "noise"
     """Politeness and filling words."""
 
@@ -38,19 +40,38 @@ def _alternatives(text: str) -> list[str]:
 
 
 def _rows(sign: Sign, *phrases: str) -> list[tuple[re.Pattern[str], Sign]]:
+    """One pattern for all the phrases, the longest first."""
     ordered = sorted((p for text in phrases for p in _alternatives(text)), key=len, reverse=True)
-    return [(re.compile(rf"(?<![\w']){p}(?![\w'])"), sign) for p in ordered]
+    return [(re.compile(rf"(?<![\w'])(?:{'|'.join(ordered)})(?![\w'])"), sign)]
 
 
 _IT = "(?:it|that|this|the smoke|the way|the path|the area)"
 _IS = "(?:is|looks|seems|should be|appears)"
 _NOT = "(?:not|never)"
 _BAD = "(?:unsafe|dangerous|toxic|poisonous|hazardous|risky|deadly|blocked|impassable|harmful|thick|hot)"
+_VERY = "(?:far |much )?(?:too |very |really |extremely |definitely |certainly |clearly )?"
 _TO_FLY = "(?: to (?:fly|go|pass)(?: through)?)?"
 _THERE = "(?:there is|there's|there are|i see|i saw|i can see|i heard|i hear|we have)"
-_WHO = "(?:a person|people|persons|person|someone|somebody|one person|a man|a woman|a child|a victim|victims)"
+_WHO = (
+    "(?:(?:two|three|four|five|several|some|many|a few) (?:people|persons|men|women)|one person|a person|person|persons"
+    "|people|someone|somebody|a man|a woman|a child|a victim|victims)"
+)
+
+_I = "(?:i |we |sorry )?(?:am |are |do |did |can |could |would |will |have |just |really |honestly |simply )*"
+_END = r"(?=\s*(?:[,.;!]|$))"
 
 SIGNS: tuple[tuple[re.Pattern[str], Sign], ...] = (
+    *_rows(
+        Sign.UNSURE,
+        f"{_I}(?:not|cannot|hardly) (?:really |quite |exactly |fully )?(?:know|say|tell|remember|recall|see|hear|judge"
+        "|understand|on site|there|sure|certain)",
+        f"{_I}(?:not|never) (?:checked|looked|seen|been)|(?:have not|had not) (?:checked|looked|seen)",
+        "not that (?:i|we) know of|(?:it )?does not matter|do not (?:care|mind|know)|(?:it )?makes no difference",
+        "(?:i|we) (?:am|are) not (?:on|at|in|near|there)(?: (?:the )?\\w+)?|(?:i|we) (?:have )?forgot(?:ten)?",
+        f"{_I}no (?:way|means) of (?:knowing|telling)|no way (?:to know|to tell|of knowing|of telling)",
+        "(?:could|would) not (?:say|tell|know)(?: you)?|(?:give|get) me a (?:minute|second|moment|sec)",
+        "beats me|no memory",
+    ),
     *_rows(
         Sign.UNSURE,
         "yes and no|i do not know|not certain|not sure|not so sure|not really sure|unsure|uncertain|no idea",
@@ -66,11 +87,15 @@ SIGNS: tuple[tuple[re.Pattern[str], Sign], ...] = (
         "i did not hear|i did not get that|i did not understand|i do not understand|which one|your choice",
         "your call",
         "you decide|either|i have no opinion|i cannot see it|cannot make it out|need to check|dunno|skip",
+        "ask (?:me )?(?:again|later)|ask (?:somebody|someone) else|closer look|tough one|hard one",
+        "good question|not my call",
         "fifty fifty|do not ask me|i am blind here",
     ),
     *_rows(
         Sign.YES,
-        "no problem|no problem at all|not a problem|no worries|no doubt|without a doubt|no doubt about it",
+        "green light|permission granted|you have permission|granted|all good|no issue|no issues",
+        "no reason not to|i would say yes|you are good|no problem|no problem at all|not a problem|no worries",
+        "no doubt|without a doubt|no doubt about it",
         "no objection",
         "no objections|no question|why not|i do not see why not|do not worry|do not hesitate",
         "could not agree more",
@@ -82,38 +107,50 @@ SIGNS: tuple[tuple[re.Pattern[str], Sign], ...] = (
     *_rows(
         Sign.PASSABLE,
         f"(?:{_IT} )?(?:{_IS} )?(?:{_NOT}|non) {_BAD}",
+        "no danger(?: there| here| at all)?|(?:there is )?nothing (?:dangerous|toxic|harmful)",
     ),
     *_rows(
         Sign.NO,
+        "nein|no go|no entry|find another way|another way|(?:that )?would be a mistake",
+        "avoid (?:it|that|that cloud)|none of (?:them|these|those)|(?:it is |that is )?a bad idea|bad idea",
+        "wait outside|the other one|another one|a different one|some other one|the other way|denied",
+        "permission denied|red light",
+        "(?:it |that |this )?(?:would|will|could) (?:kill|destroy|burn|damage|melt|wreck|crash)",
         "no way|not at all|not really|not yet|not that one|not this one|not that|not this|not it|of course not",
         "absolutely not|definitely not|certainly not|surely not|better not|rather not|i would not",
         "i do not think so",
         "i do not believe so|do not do (?:that|it)|do not go|do not|you cannot|cannot|you must not|you should not",
-        "under no circumstances|by no means|no chance|wrong one|wrong|incorrect|that is not (?:right|true|correct|it)",
+        "under no circumstances|by no means|no chance|wrong one|wrong|incorrect",
+        "that is not (?:right|true|correct|it)",
         "it is not|is not|that is not|they are not|there is not|none of them|neither|not ok|no thanks",
         "no thank you",
         "stay back|stay away|stay out|stay clear|stay where you are|keep away|keep out|keep clear|back off",
         "go around",
         "fly around|take the detour|take the long way|take the other way|avoid it",
     ),
-    *_rows(Sign.BLOCKED, f"(?:{_IT} )?(?:{_IS} )?(?:too |very |really |extremely )?{_BAD}"),
+    *_rows(
+        Sign.BLOCKED,
+        f"(?:{_IT} )?(?:{_IS} )?{_VERY}{_BAD}",
+    ),
     *_rows(
         Sign.PASSABLE,
         f"(?:{_IT} )?(?:{_IS} )?(?:perfectly |completely |quite |totally )?(?:safe|passable|harmless){_TO_FLY}",
-        "fly through|fly through it|go through|go through it|you can (?:fly|go|pass)(?: through)?(?: it)?|pass through",
+        "fly through|fly through it|go through|go through it|you can (?:fly|go|pass)(?: through)?(?: it)?",
+        "pass through",
     ),
     *_rows(
         Sign.ABSENT,
         f"(?:{_THERE} )?(?:nobody|no one|no {_WHO}|no people|none|not anyone|not anybody)(?: (?:is |was )?"
         "(?:there|inside|in there|in it|left|home|in|here))*",
-        "(?:it is |the room is |the place is |is |room is )?(?:empty|vacant|deserted|unoccupied)",
+        "(?:(?:it|the room|that room|the place|room) (?:is |has been |was )|is )?(?:empty|vacant|deserted|unoccupied)",
         "everybody (?:is |got )?out",
         "everyone (?:is |got )?out|all out",
     ),
     *_rows(
         Sign.PRESENT,
         f"{_THERE} {_WHO}(?: (?:is |was )?(?:there|inside|in there|in it|left|in|here|hurt|trapped))*",
-        f"{_WHO} (?:is |was |are |were )?(?:there|inside|in there|in it|left|trapped|in|hurt)",
+        f"{_WHO} (?:is |was |are |were |went |got |still )*(?:there|inside|in there|in it|trapped|in|hurt|stuck)",
+        f"i (?:can |could )?(?:heard|hear|saw|see) (?:{_WHO}|screaming|screams|voices|shouting|crying|knocking)",
         "(?:it is |the room is |is )?(?:not empty|occupied)",
     ),
     *_rows(
@@ -136,19 +173,21 @@ SIGNS: tuple[tuple[re.Pattern[str], Sign], ...] = (
         "surely|totally",
         "ok|okay|okey|alright|all right|fine|go ahead|go for it|go on|proceed|do it|do that|do so|please do",
         "roger|roger that",
-        "copy that|copy|confirmed|confirm|i confirm|true|that is the one|that is it|that one|this one|it is",
-        "they are",
-        "that is fine|that is ok|there is|by all means|you can|you may|looks fine(?: to me)?|looks good(?: to me)?",
+        "copy that|copy|confirmed|confirm|i confirm|i can confirm|true|that is the one|that is it|that one|this one",
+        f"(?:it is|they are|there is|there are|it does|it can|you can|you may|you should|i do){_END}",
+        "that is fine|that is ok|by all means|go right ahead|you may proceed|looks fine(?: to me)?",
+        "looks good(?: to me)?",
         "good to go",
-        "sounds good|you got it|bingo|spot on|continue|carry on|thumbs up|it does|it can|you should|yes sir",
+        "sounds good|you got it|bingo|spot on|continue|carry on|thumbs up|yes sir",
         "yes it is|uh huh|mhm",
-        "(?:you are |the way is |it is |path is |all )?clear|y",
+        "y",
     ),
+    *_rows(Sign.CLEAR, "(?:you are |the way is |it is |the path is |the room is |that room is |all )?clear"),
     *_rows(Sign.NO, "no|nope|nah|na|negative|never|not|false|no sir|nay|n|non|it does not|without|uh uh|none"),
     *_rows(
         Sign.NOISE,
         "please|thank you|thanks|sir|drone|well|oh|um|uh|er|hm|hmm|so|then|now|just|really|very|careful",
-        "be careful|slowly|and|the",
+        "be careful|slowly|only|still|well then|and|the",
         "a|an|one|box|it|that|this|to me|me|i|you|for|of|is|go|take|take it|i mean|mean|in|there|to|with|are",
         "am|was|do",
         "you want|want|need|needed|we|they|at|all|here|got|hey|man|mate|buddy|think|say|said|my friend",
@@ -163,7 +202,7 @@ CORRECTION = re.compile(
 """What comes after counts."""
 
 CONDITION = re.compile(
-    r"\b(?:if|unless|until|only|but|except|as long as|provided|when|once|after|before|though|however)\b"
+    r"\b(?:if|unless|until|only (?:if|when|for)|but|except|as long as|provided|when|once|after|before|though|however)\b"
 )
 """An answer with a condition is no answer."""
 

@@ -19,15 +19,17 @@ from mintpilot.language.referring import Mention, mention
 _LONGEST = 300
 _STRANGE_WORDS = 6
 """An answer with more words than this that say nothing known is not understood."""
-_STRANGE_WORDS_DERIVED = 1
-"""The same where a Yes is only derived from what is said of the world."""
+_STRANGE_WORDS_DERIVED = 2
+"""The same where a Yes is only derived from what is said of the world, or a No stands somewhere in a sentence."""
 _TAKEN_BACK = re.compile(r"\b(?:(?:do )?not|never|no need to|without)(?: \w+)?\s*$")
-_STATED = {
-    Sign.PASSABLE: (GapKind.OBSTACLE, PASSABLE),
-    Sign.BLOCKED: (GapKind.OBSTACLE, BLOCKED),
-    Sign.PRESENT: (GapKind.PRESENCE, PRESENT),
-    Sign.ABSENT: (GapKind.PRESENCE, ABSENT),
-}
+_STATED = (
+    (Sign.PASSABLE, GapKind.OBSTACLE, PASSABLE),
+    (Sign.BLOCKED, GapKind.OBSTACLE, BLOCKED),
+    (Sign.CLEAR, GapKind.OBSTACLE, PASSABLE),
+    (Sign.PRESENT, GapKind.PRESENCE, PRESENT),
+    (Sign.ABSENT, GapKind.PRESENCE, ABSENT),
+    (Sign.CLEAR, GapKind.PRESENCE, ABSENT),
+)
 _SHORT = {
     "can't": "cannot", "cant": "cannot", "can not": "cannot", "won't": "will not", "isn't": "is not",
     "aren't": "are not",
@@ -36,6 +38,7 @@ _SHORT = {
     "there's": "there is", "i'm": "i am", "i'd": "i would", "you're": "you are", "they're": "they are",
     "let's": "let us",
     "mustn't": "must not", "gonna": "going to", "idk": "i do not know", "y'all": "you", "what's": "what is",
+    "nobody's": "nobody is", "haven't": "have not", "hasn't": "has not", "who's": "who is",
 }  # fmt: skip
 
 
@@ -103,8 +106,9 @@ def _read(words: str, text: str, question: Question) -> Understood:
         return Understood(reading=Reading.OTHER)
     (reading,) = readings
     is_derived_yes = reading is Reading.YES and Sign.YES not in signs
+    is_vague_no = reading is Reading.NO and not re.match(r"(?:no|nope|nah|not|never|do not|negative)\b", words)
     unknown = set(strange) - set(re.findall(r"\w+", question.text.lower()))
-    if len(unknown) > (_STRANGE_WORDS_DERIVED if is_derived_yes else _STRANGE_WORDS):
+    if len(unknown) > (_STRANGE_WORDS_DERIVED if is_derived_yes or is_vague_no else _STRANGE_WORDS):
         return Understood(reading=Reading.OTHER)
     also = said.literal() if said.values and reading in (Reading.YES, Reading.NO) else None
     return Understood(reading=reading, also=also)
@@ -142,7 +146,7 @@ def _signs(words: str) -> tuple[set[Sign], list[str]]:
 def _stated(signs: set[Sign], question: Question) -> dict[str, set[str]]:
     """Values of the question's gaps that the answer states; only where one gap is of that kind."""
     stated: dict[str, set[str]] = {}
-    for sign, (kind, value) in _STATED.items():
+    for sign, kind, value in _STATED:
         gaps = [g for g in question.gaps if g.kind is kind]
         if sign in signs and len(gaps) == 1:
             stated.setdefault(gaps[0].id, set()).add(value)

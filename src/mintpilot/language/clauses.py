@@ -11,7 +11,22 @@ from mintpilot.core.geometry import Vec3
 from mintpilot.core.observation import Attribute
 from mintpilot.core.task import Action, Reference, SubGoal
 from mintpilot.language import lexicon
-from mintpilot.language.patterns import AT, BRING, DROP, FIND, FROM, GO, HOME, LOOK, PICK, SECONDS, SOMEBODY, TO, WAIT
+from mintpilot.language.patterns import (
+    AT,
+    BRING,
+    DROP,
+    FIND,
+    FROM,
+    GO,
+    HOME,
+    LOOK,
+    PICK,
+    SECONDS,
+    SOMEBODY,
+    STAY,
+    TO,
+    WAIT,
+)
 from mintpilot.language.phrases import parse_phrase
 
 
@@ -54,6 +69,8 @@ def read_clause(clause: str, reading: Reading) -> bool:
 
 def _move(reading: Reading, *, thing: str, source: str | None = None, goal: str) -> bool:
     """Bring something somewhere: picked up first unless it is carried already."""
+    if thing in ("over", "up", "back", "straight", "directly", "on"):
+        return False
     if thing in lexicon.PRONOUNS or (reading.carrying and source is None):
         if not reading.carrying:
             raise InputError(f"'{thing}' to be brought to '{goal}' was not picked up before: say what to pick up")
@@ -90,9 +107,9 @@ def _look(reading: Reading, *, place: str) -> bool:
     return True
 
 
-def _go(reading: Reading, *, place: str) -> bool:
+def _go(reading: Reading, *, place: str, seconds: str | None = None, unit: str | None = None) -> bool:
     reading.add(Action.GO, reading.reference(place))
-    return True
+    return seconds is None or unit is None or _wait(reading, seconds=seconds, unit=unit)
 
 
 def _go_on(reading: Reading, *, place: str) -> bool:
@@ -138,9 +155,10 @@ _PATTERNS: tuple[tuple[re.Pattern[str], Callable[..., bool]], ...] = tuple(
         (f"{DROP} (?P<thing>.+?)(?: down| off)? {AT} (?P<goal>.+)", _drop),
         (f"{PICK} (?P<thing>.+?) {FROM} (?P<source>.+)", _pick),
         (f"{PICK} (?P<thing>.+?)(?: up)?", _pick),
+        (f"{LOOK} (?:.+) for (?P<place>(?:the|a|an) .+)", _go),
         (f"{LOOK} (?P<place>.+)", _look),
         (f"{FIND} (?P<place>.+)", _go),
-        (f"{GO} (?P<place>.+)", _go),
+        (f"{GO} (?P<place>.+?){STAY}", _go),
         ("go (?P<place>there)", _go),
         ("(?:on )?to (?P<place>.+)", _go_on),
         ("(?P<place>(?:the|every|each|all) .+)", _same),

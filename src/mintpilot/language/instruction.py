@@ -79,7 +79,7 @@ def _avoidances(words: str) -> tuple[str, tuple[Avoidance, ...]]:
         if kind is None and not set(what.split()) & lexicon.NEVER_TOUCHED:
             raise InputError(f"'{what}' cannot be avoided by name: only smoke, doors and areas marked on the map can")
         if kind is not None:
-            found.append(Avoidance(kind=kind, strict=match["soft"] is None))
+            found.append(Avoidance(kind=kind, strict=match["soft"] is None and match["wish"] is None))
     return patterns.AVOID.sub(" ", words).strip(" ,.;"), tuple(dict.fromkeys(found))
 
 
@@ -88,12 +88,14 @@ def _clauses(words: str) -> list[str]:
         patterns.TRAILING.sub("", patterns.POLITE.sub("", part.strip(" ,.!?"))).strip(" ,.!?")
         for part in patterns.SPLIT.split(words)
     )
-    return [part for part in parts if part and part not in ("and", "then", "please", "finally", "do", "it")]
+    return [part for part in parts if part and part not in ("and", "then", "please", "finally", "do", "it", "go")]
 
 
 def _parts(clause: str) -> list[str]:
     """The clause, or its parts where ``and`` joins what is no step of its own: ``the red box and the blue one``."""
-    return [clause] if re.search(r"\b(with|wearing|containing)\b", clause) else clause.split(" and ")
+    if re.search(r"\b(with|wearing|containing)\b", clause):
+        return [clause]
+    return re.split(r",? and |, (?=(?:the|every|all|each) )", clause)
 
 
 def _seeks_people(clause: str, reading: Reading) -> bool:

@@ -62,7 +62,7 @@ ROOMS = _words("room rooms chamber chambers office offices")
 
 PRONOUNS = _words("it them this that him her there")
 
-DETERMINERS = _words("the a an this that these those my our his her their some any")
+DETERMINERS = _words("the a an this that these those my our his her their some any two three four five six")
 
 EVERY = _words("every each all both")
 

@@ -24,8 +24,9 @@ GO = (
     + "*"
     + any_of(" to| towards| toward| over| at| above| next to| near| by")
 )
-FIND = any_of(
-    "find|locate|search for|look for|seek|rescue|reach|approach|visit|inspect|look at|check on|check|go and see|see to",
+FIND = "(?:go )?" + any_of(
+    "check for|find|locate|search for|look for|seek|rescue|reach|approach|visit|inspect|look at|check on",
+    "check|go and see|see to",
     "attend to|get to|help|save|track down",
 )
 LOOK = any_of(
@@ -38,6 +39,7 @@ HOME = (
         "back|home|back home|to base|back to base|to the pad|back to the pad|to the start|to start|back to the start"
     )
 )
+STAY = r"(?: for (?P<seconds>\d+(?:\.\d+)?) ?(?P<unit>s|sec\w*|min\w*))?"
 WAIT = any_of("wait|hover|stay|hold|remain") + "(?: there| here)?(?: for)?"
 SECONDS = r"(?P<seconds>\d+(?:\.\d+)?) ?(?P<unit>s|sec\w*|min\w*)"
 SOMEBODY = any_of(r"him|her|them|the \w+ (?:person|man|woman|victim)|the (?:person|victim|man|woman)")
@@ -47,10 +49,13 @@ AT = any_of("to|at|by|near|next to|beside|with|in front of")
 # How an instruction falls into clauses ----------------------------------------------------------------------------
 
 _VERBS = (
-    "pick|grab|take|collect|fetch|get|retrieve|lift|bring|carry|deliver|give|hand|transport|drop|put|place|leave|go|fly",
-    "move|head|navigate|travel|proceed|come|return|hover|wait|stay|find|locate|search|look|seek|rescue|reach|approach",
+    "pick|grab|take|collect|fetch|get|retrieve|lift|bring|carry|deliver|give|hand|transport|drop|put|place",
+    "leave|go|fly",
+    "move|head|navigate|travel|proceed|come|return|hover|wait|stay|find|locate|search|look|seek|rescue|reach",
+    "approach",
     "visit|inspect|check|see|peek|examine|clear|scan|sweep|help|save|make|land|open|close|push|pull|extinguish",
-    "photograph|film|follow|shoot|attack|avoid|skip|keep|hold|then|set|tell|turn|explore|determine|verify|continue|do",
+    "photograph|film|follow|shoot|attack|avoid|skip|keep|hold|then|set|tell|turn|explore|determine|verify",
+    "continue|do",
     "never|repair|call|spray|throw|break|crash|hit|ram|dig|drive|swim|talk|comb|release|remain|attend|track",
 )
 _JOINTS = any_of(
@@ -60,7 +65,8 @@ SPLIT = re.compile(rf"\s*{_JOINTS}\s*(?={any_of(*_VERBS, 'please|finally|afterwa
 POLITE = re.compile(
     "^(?:"
     + any_of(
-        "please|kindly|hey|hello|hi|ok|okay|now|first|next|then|also|and|finally|lastly|afterwards|after that|drone|so",
+        "please|kindly|hey|hello|hi|ok|okay|now|first|next|then|also|and|finally|lastly|afterwards",
+        "after that|drone|so|go and(?= find| check| see| look| search)",
         "you should|you must|you need to|could you|can you|would you|will you|i want you to|i need you to",
         "i would like you to|i'd like you to|we need you to|we need to|your task is to|your mission is to|try to",
     )
@@ -73,7 +79,7 @@ TRAILING = re.compile(
 # What is to be avoided --------------------------------------------------------------------------------------------
 
 AVOID = re.compile(
-    "(?:,? ?(?:and|but|while|then)? ?)"
+    "(?:,? ?(?:and|but|while|then)? ?)(?P<wish>if possible |if you can |where possible |when possible |preferably )?"
     + any_of(
         "skip|skipping|avoid|avoiding|stay out of|staying out of|stay away from|staying away from|stay clear of",
         "keep out of|keep away from|keep clear of|keeping clear of",
@@ -122,6 +128,9 @@ VENUE = re.compile(
 )
 HERE = re.compile(r"\s+(?:in here|in there|over there|nearby|inside|around)$")
 SIDE = re.compile(r"\s+(?:on|to|at) (?:the|your|our|its) (left|right)(?:[- ]hand)?(?: side)?$")
-NEAR = re.compile(r"\s+(?:next to|near|beside|by|close to|under|underneath|in front of|behind|at|on|inside|in) (.+)$")
+NEAR = re.compile(
+    r"(?:\s+(?:lying|sitting|standing|located|placed|parked))?"
+    r"\s+(?:next to|near|beside|by|close to|under|underneath|in front of|behind|at|on|inside|in) (.+)$"
+)
 WITH = re.compile(r"\s+(?:with|containing|that has|that have|wearing) (?:the |a |an |some )?(.+)$")
 STATE = re.compile(r"\s+(?:who|that|which) (?:is|are|was|were|may be|might be) (\w+)$")
