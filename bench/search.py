@@ -12,6 +12,7 @@ import json
 import resource
 import subprocess
 import sys
+import tempfile
 import time
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
@@ -159,19 +160,27 @@ def joint_rows(plan: list[tuple[World, tuple[int, ...]]], pairs: int, most: int)
     return rows
 
 
-def peak_mib(shape: tuple[int, int, int], k: int) -> float:
-    """Peak memory of a fresh process, all libraries included, that plans once with k regions, MiB."""
-    command = [sys.executable, "-m", "bench.search", "--peak", *(str(n) for n in (*shape, k))]
-    done = subprocess.run(command, capture_output=True, text=True, check=True)
+def peak_mib(k: int) -> float:
+    """Peak memory of a fresh process, all libraries included, that plans once on 256 x 256 x 64 cells, MiB."""
+    world = warehouse_3d(256, 256, 64, (6, 8, 20))
+    ends = far_pairs(world, 1)[0]
+    regions = adversarial_regions(world, ends, k, k)
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "world.npz"
+        sizes = [len(r) for r in regions]
+        np.savez(file, free=world.free, ends=np.array(ends), cells=np.concatenate(regions), sizes=np.array(sizes))
+        command = [sys.executable, "-m", "bench.search", "--peak", str(file)]
+        done = subprocess.run(command, capture_output=True, text=True, check=True)
     return float(done.stdout)
 
 
-def print_peak(nx: int, ny: int, nz: int, k: int) -> None:
+def print_peak(file: Path) -> None:
     """What `peak_mib` runs."""
-    world = warehouse_3d(nx, ny, nz, (6, 8, 20))
-    ends = far_pairs(world, 1)[0]
-    regions = adversarial_regions(world, ends, k, k)
-    JointSearch(world.free, regions).between(*ends)
+    data = np.load(file)
+    regions = np.split(data["cells"], np.cumsum(data["sizes"])[:-1])
+    found = JointSearch(data["free"], regions).between(*data["ends"])
+    if not found.complete:
+        raise AssertionError("the search did not finish")
     print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024)
 
 
@@ -261,10 +270,10 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--quick", action="store_true", help="small grids, one pair each; writes nothing")
     parser.add_argument("--json", type=Path, help="file for the rows")
-    parser.add_argument("--peak", type=int, nargs=4, metavar=("NX", "NY", "NZ", "K"), help=argparse.SUPPRESS)
+    parser.add_argument("--peak", type=Path, help=argparse.SUPPRESS)
     options = parser.parse_args()
     if options.peak:
-        print_peak(*options.peak)
+        print_peak(options.peak)
         return
     flat, flat_big = warehouse_2d(512), warehouse_2d(1024)
     hall, hall_big = warehouse_3d(100, 75, 20, (3, 4, 6)), warehouse_3d(200, 150, 40, (5, 6, 12))
@@ -275,7 +284,7 @@ def main() -> None:
     else:
         singles = single_rows([flat, flat_big, hall, hall_big], 5)
         joints = joint_rows([(flat, (8, 10, 16)), (flat_big, (8, 10)), (hall, (8, 10)), (hall_big, (8, 10))], 5, 256)
-        peak = peak_mib((256, 256, 64), 10)
+        peak = peak_mib(10)
     if (row := depot(options.quick)) is not None:
         joints.append(joint_row(*row, 256))
     made = tables(singles, joints, peak)

@@ -53,10 +53,10 @@ def test_clearance_equals_all_pairs(shape: tuple[int, int, int], radius: float, 
     solid = {tuple(c) for c in np.argwhere(cells != Cell.FREE)}
     ring = {
         (z, y, x)
-        for z in range(shape[0])
+        for z in (range(1) if shape[0] == 1 else range(-1, shape[0] + 1))
         for y in range(-1, shape[1] + 1)
         for x in range(-1, shape[2] + 1)
-        if not (0 <= y < shape[1] and 0 <= x < shape[2])
+        if not (0 <= z < shape[0] and 0 <= y < shape[1] and 0 <= x < shape[2])
     }
     expected = np.ones(shape, bool)
     for cell in touching(shape, solid | ring, body, 0.5) | solid:

@@ -9,8 +9,8 @@ each blocked cell; that distance is computed exactly (in squared half cells, who
   half the move's length (half an edge for a straight move, 0.87 edges for a space diagonal); moves never cut corners,
   and ``margin_m`` is there to cover it.
 
-Cells outside the grid block sideways. Above and below they do not: a floor or a roof belongs into the map. In 2D maps
-(``nz == 1``) the body is a disc.
+What lies outside the grid is not known to be free, so it blocks: sideways, and in 3D above and below too (a hall's grid
+begins at the floor, which need not be in any cell). In 2D maps (``nz == 1``) the body is a disc.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ _FAR = np.uint32(1 << 28)  # squared offsets added to it still fit in 32 bits
 
 
 def flyable_cells(map: SemanticMap, limits: VehicleLimits) -> Bools:
-    """Cells in whose centre the vehicle touches nothing occupied, unknown, or sideways out of the grid.
+    """Cells in whose centre the vehicle touches nothing occupied, unknown, or outside the grid.
 
     Regions are ignored: a region's cells are what they would be without it.
 
@@ -39,9 +39,10 @@ def flyable_cells(map: SemanticMap, limits: VehicleLimits) -> Bools:
         Flags of shape (nz, ny, nx).
     """
     free = np.asarray(map.cells == Cell.FREE)
-    pad = ((0, 0), (1, 1), (1, 1))
-    near = _within(np.pad(~free, pad, constant_values=True), _radius_cells(map.frame, limits))
-    flyable: Bools = free & ~near[:, 1:-1, 1:-1]
+    above = 0 if map.frame.is_flat else 1
+    solid = np.pad(~free, ((above, above), (1, 1), (1, 1)), constant_values=True)
+    near = _within(solid, _radius_cells(map.frame, limits))
+    flyable: Bools = free & ~near[above : above + free.shape[0], 1:-1, 1:-1]
     return flyable
 
 
