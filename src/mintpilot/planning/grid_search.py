@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from mintpilot.core.errors import InfeasibleError
 from mintpilot.core.geometry import Bools, Floats, Ints
-from mintpilot.planning import kernels
+from mintpilot.planning import buckets, kernels
 from mintpilot.planning.lattice import Lattice, Words, lattice_of
 
 
@@ -23,15 +23,15 @@ class Workspace:
     size: int
     """Number of nodes."""
     cells: NDArray[np.void] = field(init=False)
-    """State of each node, dtype `kernels.CELL`."""
+    """State of each node, dtype `buckets.CELL`."""
     pool: NDArray[np.void] = field(init=False)
-    """Queue entries, dtype `kernels.ENTRY`."""
+    """Queue entries, dtype `buckets.ENTRY`."""
     tag: int = field(init=False, default=0)
     """Number of the last search: states with another tag are stale."""
 
     def __post_init__(self) -> None:
-        self.cells = np.zeros(self.size, kernels.CELL)
-        self.pool = np.empty(1 << 12, kernels.ENTRY)
+        self.cells = np.zeros(self.size, buckets.CELL)
+        self.pool = np.empty(1 << 12, buckets.ENTRY)
 
     def next_tag(self) -> int:
         """The number of a new search."""
@@ -43,7 +43,7 @@ class Workspace:
 
     def grown_tag(self) -> int:
         """The number of a new search, after doubling the pool."""
-        self.pool = np.empty(2 * self.pool.size, kernels.ENTRY)
+        self.pool = np.empty(2 * self.pool.size, buckets.ENTRY)
         return self.next_tag()
 
 
@@ -89,8 +89,8 @@ class GridSearch:
         if not (lattice.free[source] and lattice.free[target]):
             return np.inf, np.zeros(0, np.int64)
         tag = work.next_tag()
-        cost = kernels.FULL
-        while cost == kernels.FULL:
+        cost = buckets.FULL
+        while cost == buckets.FULL:
             cost, self.expanded = kernels.astar(
                 allowed,
                 lattice.offset,
@@ -108,7 +108,7 @@ class GridSearch:
                 tag,
                 work.pool,
             )
-            tag = work.grown_tag() if cost == kernels.FULL else tag
+            tag = work.grown_tag() if cost == buckets.FULL else tag
         if not np.isfinite(cost):
             return np.inf, np.zeros(0, np.int64)
         return cost, kernels.walk_back(work.cells, lattice.offset, source, target)

@@ -7,7 +7,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from mintpilot.core.geometry import Floats, Ints
-from mintpilot.planning.kernels import PER_EDGE, RING, SLACK, lowest_bit, redundant
+from mintpilot.planning.buckets import PER_EDGE, RING, SLACK, lowest_bit, redundant
 from mintpilot.planning.lattice import NEAR, Words
 from mintpilot.planning.moves import NO_MOVE
 
