@@ -139,7 +139,7 @@ def main() -> None:
         command="python -m bench.questions",
         how=(
             f"Expectations are exact: every answer is followed, weighted by its probability. {WORLDS} worlds for each "
-            "k: 24 x 40 cells of 1 m, 15 % obstacles, rectangular regions of 4 to 14 by 2 to 3 cells, each passable with "
+            "k: 24 x 40 cells of 1 m, 15 % obstacles, regions of 4 to 14 by 2 to 3 cells, each passable with "
             f"probability one half; 1 m/s, delta_c = {SETTINGS.delta_c_s:.0f} s, alpha = 0, rule regret. Twenty "
             "questions: single attributes, pairs of attributes and names; with wrong answers, asking stops at 98 %."
         ),

@@ -70,12 +70,13 @@ def candidate_queries(
     support, language = mint.support, _language(mint.belief.gaps, start_m)
     most = max(1, min(MAX_CUTS, MAX_CELLS // max(1, support.size)))
     looked_at = language.queries[: 4 * most]
-    rows = language.truths(mint.belief, len(looked_at))[:, support]
+    rows: Bools = language.truths(mint.belief, len(looked_at))[:, support]
     # A cut and its opposite divide alike; of those that divide alike the first one is the easiest.
     keys = np.packbits(rows ^ rows[:, :1], axis=1)
     _, first, key_of = np.unique(keys, axis=0, return_index=True, return_inverse=True)
     barred = {key_of.ravel()[i] for i, query in enumerate(looked_at) if refused and query.id in refused}
-    telling = rows.any(axis=1) & ~rows.all(axis=1)
+    held = np.count_nonzero(rows, axis=1)
+    telling = (held > 0) & (held < support.size)
     kept = sorted(i for key, i in enumerate(first.tolist()) if telling[i] and key not in barred)
     return tuple(looked_at[i] for i in kept[:most])
 

@@ -57,7 +57,8 @@ def decisions(class_of: Ints, probability: Floats, regret_s: Floats, settings: A
         left[taken] = 0.0
         if (merged >= 0).all():
             break
-    return merged
+    # What no plan is good for keeps its own class.
+    return np.where(merged >= 0, merged, len(regret_s) + class_of)
 
 
 def choose(

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass, field
 
 import numpy as np
 
-from mintpilot.core.gap import Assumptions, Belief, Joint
+from mintpilot.core.gap import ABSENT, PASSABLE, Assumptions, Belief, GapKind, Joint
 from mintpilot.core.geometry import Floats, Ints
 from mintpilot.core.mission import AskingSettings
 from mintpilot.core.plan import Plan
@@ -34,9 +35,9 @@ class Draft:
 
 def finish(root: Draft, belief: Belief, axes: Collection[str], nodes: int, settings: AskingSettings) -> Mint:
     """The tree as a value, its leaves sorted into classes, probabilities normalised over what was planned for."""
-    joint = joint_over(belief, axes, settings.max_joint)
-    leaf_of = np.full(joint.probability.shape, -1)
     leaves = [d for d in _drafts(root) if d.leaf is not None]
+    joint = joint_over(belief, _with_demanded(root, leaves, belief, axes, settings), settings.max_joint)
+    leaf_of = np.full(joint.probability.shape, -1)
     for index, leaf in enumerate(leaves):
         leaf_of[np.ix_(*box(joint, leaf.given))] = index
     mass = np.where(leaf_of >= 0, joint.probability, 0.0)
@@ -82,6 +83,33 @@ def cheapest_under(mint: Mint) -> Floats:
         if leaf.optimistic is not None:
             lowest[np.ix_(*box(mint.belief, leaf.given))] = leaf.optimistic.cost_s
     return lowest
+
+
+def demands(plan: Plan) -> dict[str, str]:
+    """What must hold for the plan to succeed: gap id → the value that it needs."""
+    return {
+        **dict.fromkeys(plan.enters, PASSABLE),
+        **dict(plan.binds),
+        **dict.fromkeys(plan.skips, ABSENT),
+    }
+
+
+def _with_demanded(
+    root: Draft, leaves: list[Draft], belief: Belief, axes: Collection[str], settings: AskingSettings
+) -> set[str]:
+    """The axes and, as far as there is room, the other open gaps that leaf plans depend on.
+
+    A plan may rest on a gap that its branch did not ask for: correlated with one that was. Elsewhere it may be closed.
+    Target gaps that are clear enough are taken for granted and stay out.
+    """
+    chosen, gaps = set(axes), {g.id: g for g in belief.gaps}
+    cells = math.prod(len(gaps[name].values) for name in chosen)
+    for name in sorted({d for leaf in leaves if leaf.plan for d in demands(leaf.plan)} & set(gaps) - chosen):
+        gap = gaps[name]
+        if gap.kind is not GapKind.TARGET and root.given.is_open(gap) and cells * len(gap.values) <= settings.max_joint:
+            chosen.add(name)
+            cells *= len(gap.values)
+    return chosen
 
 
 def _classes(mass: list[float], leaves: list[Draft]) -> tuple[tuple[PlanClass, ...], Ints]:

@@ -17,6 +17,8 @@ def entropy_bits(probability: ArrayLike) -> float:
     mass = mass[mass > 0]
     if mass.size < 2:
         return 0.0
+    bound = np.log2(mass.size)
     mass = mass / mass.sum()
+    mass = mass[mass > 0]
     # Rounding may leave the sum a hair outside its bounds.
-    return float(np.clip(-(mass * np.log2(mass)).sum(), 0.0, np.log2(mass.size)))
+    return float(np.clip(-(mass * np.log2(mass)).sum(), 0.0, bound))

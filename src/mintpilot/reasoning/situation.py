@@ -4,38 +4,29 @@ from __future__ import annotations
 
 import numpy as np
 
-from mintpilot.core.gap import ABSENT, PASSABLE, Belief, GapKind, Joint
+from mintpilot.core.gap import Belief, GapKind, Joint
 from mintpilot.core.geometry import Bools, Floats
 from mintpilot.core.mission import AskingSettings
 from mintpilot.core.plan import Plan
-from mintpilot.core.tree import Mint, PlanClass
+from mintpilot.core.tree import Mint
+from mintpilot.reasoning.classes import demands
 from mintpilot.reasoning.tables import mask_of
 
 MAX_CELLS = 1 << 22
 """Bound on the cells of a regret matrix; beyond it only the likeliest classes get a row."""
 
 
-def demands(plan: Plan) -> dict[str, tuple[str, ...]]:
-    """What must hold for the plan to succeed: gap id → the one value that it needs."""
-    return {
-        **dict.fromkeys(plan.enters, (PASSABLE,)),
-        **{gap: (value,) for gap, value in plan.binds},
-        **dict.fromkeys(plan.skips, (ABSENT,)),
-    }
-
-
 def succeeds(plan: Plan, joint: Joint) -> Bools:
     """Under which joint hypotheses the plan succeeds, in the shape of ``joint.probability``."""
-    return mask_of(joint, demands(plan))
+    return mask_of(joint, {gap: (value,) for gap, value in demands(plan).items()})
 
 
 def may_fail(plan: Plan, belief: Belief, floor: float) -> bool:
     """Whether some single gap may, with more probability than the floor, have a value that the plan cannot bear."""
-    open_gaps = {g.id for g in belief.gaps}
+    kinds = {g.id: g for g in belief.gaps}
     return any(
-        1 - belief.probability_of(gap, values[0]) > floor
-        for gap, values in demands(plan).items()
-        if gap in open_gaps and values[0] in belief.factor(gap).gaps[belief.factor(gap).axis(gap)].values
+        gap in kinds and value in kinds[gap].values and 1 - belief.probability_of(gap, value) > floor
+        for gap, value in demands(plan).items()
     )
 
 
@@ -51,7 +42,7 @@ def regret_matrix(mint: Mint, settings: AskingSettings) -> Floats:
     best = np.full(support.size, np.inf)
     for number, group in enumerate(mint.classes):
         if group.plan is not None:
-            fine = _class_succeeds(group, group.plan, mint).ravel()[support]
+            fine = _class_succeeds(number, group.plan, mint).ravel()[support]
             row = np.where(fine, group.plan.cost_s, np.inf)
             best = np.minimum(best, row)
             if number < rows:
@@ -65,11 +56,15 @@ def regret_matrix(mint: Mint, settings: AskingSettings) -> Floats:
     return lost
 
 
-def _class_succeeds(group: PlanClass, plan: Plan, mint: Mint) -> Bools:
-    """Where a class's plan succeeds. Plans do not name ordered values that they need: its own leaves' count."""
+def _class_succeeds(number: int, plan: Plan, mint: Mint) -> Bools:
+    """Where the plan of a class surely succeeds.
+
+    Where it rests on something that the tree's axes do not show (an ordered value, a gap for which there was no room),
+    that is under its own hypotheses only.
+    """
+    axes, given = {g.id for g in mint.belief.gaps}, dict(mint.root.given.items)
+    hidden = any(name not in axes and given.get(name) != frozenset({value}) for name, value in demands(plan).items())
     fine = succeeds(plan, mint.belief)
-    ordered = [g for g in mint.belief.gaps if g.kind is GapKind.VALUE]
-    for gap in ordered:
-        own = {v for given in group.given for v in given.possible(gap)}
-        fine = fine & mask_of(mint.belief, {gap.id: own})
+    if hidden or any(g.kind is GapKind.VALUE for g in mint.belief.gaps):
+        fine &= mint.class_of == number
     return fine

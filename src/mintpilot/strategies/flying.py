@@ -8,8 +8,9 @@ from mintpilot.core.plan import Plan
 from mintpilot.core.ports import Fly, Situation
 from mintpilot.core.tree import Mint, StopReason
 from mintpilot.reasoning.certificate import certify
+from mintpilot.reasoning.classes import demands
 from mintpilot.reasoning.safety import taken_for_granted, unknown_regions
-from mintpilot.reasoning.situation import demands, succeeds
+from mintpilot.reasoning.situation import succeeds
 from mintpilot.reasoning.tree import build_tree
 
 
@@ -50,7 +51,7 @@ def expected_cost_s(situation: Situation, mint: Mint, plan: Plan) -> float:
     held = float(np.where(succeeds(plan, mint.belief), mint.belief.probability, 0.0).sum())
     axes = {g.id for g in mint.belief.gaps}
     for factor in situation.belief.factors:
-        for gap_id, (value,) in demands(plan).items():
+        for gap_id, value in demands(plan).items():
             if gap_id not in axes and any(g.id == gap_id for g in factor.gaps):
                 held *= factor.probability_of(gap_id, value)
     return plan.cost_s + max(0.0, 1.0 - held) * situation.settings.failure_price_s
