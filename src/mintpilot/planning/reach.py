@@ -1,7 +1,7 @@
 """Where to look from next: for surveys of a world that is only partly known.
 
-Frontier exploration with a gain: places that can be reached through known free space are weighed by how much that is
-unknown lies around them, and by how far away they are.
+Next-best-view exploration: places that can be reached through known free space are weighed by how much unknown space
+could be seen from them, and by how far away they are.
 """
 
 from __future__ import annotations
@@ -9,24 +9,28 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.ndimage import uniform_filter
 
 from mintpilot.core.errors import InfeasibleError
 from mintpilot.core.geometry import Bools, Floats, GridFrame, Ints, Vec3
 from mintpilot.core.plan import VehicleLimits
-from mintpilot.core.semantic_map import Cell, SemanticMap
+from mintpilot.core.semantic_map import SemanticMap
 from mintpilot.planning.flyable import known_flyable
 from mintpilot.planning.grid_search import distance_field, shortest_path
+from mintpilot.planning.sight import visible_unknown_m3
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LookAround:
     """How places are weighed."""
 
-    range_m: float = 3.0
-    """Unknown space this near, along each axis, counts."""
-    least_gain_m3: float = 5.0
-    """Places with less unknown space around them are not worth going to."""
+    reach_m: float = 5.0
+    """Unknown space this near counts."""
+    elevation_rad: tuple[float, float] = (-0.65, 0.3)
+    """Lowest and highest angle that the camera sees, against the horizon."""
+    least_gain_m3: float = 4.0
+    """Places that show less unknown space are not worth going to."""
+    places: int = 160
+    """How many places are weighed at a time."""
     fading_m: float = 8.0
     """At this distance a gain counts 1/e of what it counts here."""
     apart_m: float = 2.0
@@ -57,20 +61,20 @@ def next_view(
     way_cells = distance_field(free, start)
     cells = np.argwhere(np.isfinite(way_cells) & free)
     centres = map.frame.centres_of(cells)
-    gain_m3 = _unknown_around(map, settings.range_m)[tuple(cells.T)]
-    way_m = way_cells[tuple(cells.T)] * map.frame.resolution_m
+    high = centres[:, 2] >= map.frame.origin_m[2] + settings.lowest_m
     apart = np.full(len(cells), np.inf)
     for place in seen_from_m:
         apart = np.minimum(apart, np.linalg.norm(centres - place, axis=1))
-    high = centres[:, 2] >= map.frame.origin_m[2] + settings.lowest_m
-    worth = np.where(
-        (gain_m3 >= settings.least_gain_m3) & (apart > settings.apart_m) & high,
-        gain_m3 * np.exp(-way_m / settings.fading_m),
-        0.0,
-    )
+    chosen = np.flatnonzero(high & (apart > settings.apart_m))
+    chosen = chosen[:: max(1, len(chosen) // settings.places)]
+    if not len(chosen):
+        return None
+    gain_m3 = visible_unknown_m3(map, centres[chosen], reach_m=settings.reach_m, elevation_rad=settings.elevation_rad)
+    way_m = way_cells[tuple(cells[chosen].T)] * map.frame.resolution_m
+    worth = np.where(gain_m3 >= settings.least_gain_m3, gain_m3 * np.exp(-way_m / settings.fading_m), 0.0)
     if not worth.any():
         return None
-    return _way(free, map.frame, start, cells[int(np.argmax(worth))], start_m)
+    return _way(free, map.frame, start, cells[chosen[int(np.argmax(worth))]], start_m)
 
 
 def way_to(map: SemanticMap, limits: VehicleLimits, *, start_m: Vec3, goal_m: Vec3) -> Floats | None:
@@ -99,13 +103,3 @@ def _nearest(free: Bools, frame: GridFrame, point_m: Vec3) -> tuple[int, int, in
     best = int(np.argmin(offsets))
     z, y, x = (int(i) for i in cells[best])
     return (z, y, x) if offsets[best] <= 0.5 else None
-
-
-def _unknown_around(map: SemanticMap, range_m: float) -> Floats:
-    """Cubic metres of unknown space within that distance along each axis, for every cell."""
-    width = 2 * max(1, round(range_m / map.frame.resolution_m)) + 1
-    unknown = (map.cells == Cell.UNKNOWN).astype(np.float64)
-    share: Floats = uniform_filter(unknown, size=[min(width, 2 * n + 1) for n in unknown.shape], mode="constant")
-    size = np.prod([min(width, 2 * n + 1) for n in unknown.shape]) * map.frame.resolution_m**3
-    around: Floats = share * float(size)
-    return around
