@@ -97,9 +97,36 @@ BOX |= {
     "red is right": "yes", "yes that is the one I mean": "yes", "of course the red one": "yes",
     "the small red": "yes", "blue, not red": "no", "no, a large one": "no", "none of these": "no",
     "that's not it": "no", "not that box": "no", "any of them": "other", "I forgot": "unsure",
-    "whichever is closer": "other", "what boxes?": "unsure",
+    "whichever is closer": "other", "what boxes?": "other",
+}  # fmt: skip
+SMOKE |= {
+    "yes, go through": "yes", "yes, that area is clear": "yes", "sure thing, fly": "yes",
+    "affirmative, cleared to go": "yes", "yes indeed": "yes", "no reason not to, go ahead": "yes", "ok then": "yes",
+    "yes, it's just dust": "yes", "good to go": "yes", "absolutely safe": "yes",
+    "yes, the crew walked through it": "yes", "I'd say yes": "yes", "please continue": "yes", "yes.": "yes",
+    "no, keep clear": "no", "not a good idea": "no", "no, that's acid smoke": "no", "definitely toxic": "no",
+    "don't risk it": "no", "no entry": "no", "negative, do not enter": "no", "that would be a mistake": "no",
+    "avoid that cloud": "no", "nein": "no", "it is extremely dangerous": "no", "no go": "no",
+    "find another way": "no", "not in a million years": "no", "please no": "no", "it is far too hot in there": "no",
+    "I honestly don't know": "unsure", "couldn't say": "unsure", "not certain": "unsure", "who can tell": "other",
+    "we are still checking": "other", "what do you mean?": "unsure", "no clue, mate": "unsure",
+    "call you back": "other", "if the fan is on, yes": "other", "the coffee is cold": "other",
+    "what colour is it?": "other", "yes except near the wall": "other", "stop stop stop": "command",
+    "get back here": "command", "abort this": "command", "hold it": "command",
+}  # fmt: skip
+ROOM |= {
+    "yes, a child": "yes", "someone went in": "yes", "there were three people in there": "yes",
+    "yes I heard knocking": "yes", "no, all out": "no", "the room is empty": "no", "nobody": "no",
+    "no there isn't": "no", "everyone is out": "no", "could be": "unsure", "not that I know of": "unsure",
+    "I have not been there": "unsure",
+}  # fmt: skip
+BOX |= {
+    "yes, red": "yes", "correct, the small one in red": "yes", "the red box please": "yes", "indeed": "yes",
+    "no, the other box": "no", "the blue ones": "no", "no, not red": "no", "big one": "no", "I said blue": "no",
+    "can't remember": "unsure", "doesn't matter": "unsure", "why do you ask?": "other",
 }  # fmt: skip
 ALSO: dict[str, set[str]] = {
+    "not the small red one": {"box-2", "box-3"},
     "not the red one, the blue one": {"box-2", "box-3"},
     "no, I mean the big blue box": {"box-2"},
     "the blue one": {"box-2", "box-3"},

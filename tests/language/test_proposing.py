@@ -89,7 +89,14 @@ HOSTILE = st.one_of(
         max_leaves=12,
     ).map(json.dumps),
     st.sampled_from(
-        ["{" * 50_000, '{"cuts": []} ignore the rest', '{"reading": "command"}', '{"reading": "yes", "also": 1}']
+        [
+            "{" * 50_000,
+            '{"cuts": []} ignore the rest',
+            '{"reading": "command"}',
+            '{"reading": "yes", "also": 1}',
+            "yes",
+            "no",
+        ]
     ),
 )
 
@@ -104,7 +111,7 @@ def test_whatever_a_model_proposes_is_sound_or_nothing(text: str) -> None:
 
 
 def _agreeing(prompt: str) -> str:
-    return json.dumps({"reading": "no" if "other way round" in prompt else "yes"})
+    return "no" if "the opposite" in prompt else "Yes."
 
 
 def test_a_model_that_agrees_with_itself_reads_what_the_rules_do_not() -> None:
@@ -115,7 +122,7 @@ def test_a_model_that_agrees_with_itself_reads_what_the_rules_do_not() -> None:
 
 
 def test_a_model_that_always_says_yes_is_not_believed() -> None:
-    liar = FunctionModel(lambda _: '{"reading": "yes"}')
+    liar = FunctionModel(lambda _: "yes")
     assert understand_with_model("the crimson fellow", questions.BOX, liar).reading is Reading.OTHER
 
 
@@ -123,7 +130,7 @@ def test_the_rules_come_first_and_orders_are_theirs() -> None:
     liar = FunctionModel(_agreeing)
     assert understand_with_model("no", questions.BOX, liar).reply is Reply.NO
     assert understand_with_model("stop", questions.BOX, liar).reading is Reading.COMMAND
-    general = FunctionModel(lambda _: '{"reading": "command"}')
+    general = FunctionModel(lambda _: "command")
     assert understand_with_model("the crimson fellow", questions.BOX, general).reading is Reading.OTHER
 
 

@@ -48,7 +48,7 @@ def _rows(sign: Sign, *phrases: str) -> list[tuple[re.Pattern[str], Sign]]:
 _IT = "(?:it|that|this|the smoke|the way|the path|the area)"
 _IS = "(?:is|looks|seems|should be|appears)"
 _NOT = "(?:not|never)"
-_BAD = "(?:unsafe|dangerous|toxic|poisonous|hazardous|risky|deadly|blocked|impassable|harmful|thick|hot)"
+_BAD = "(?:unsafe|dangerous|toxic|poisonous|hazardous|risky|deadly|lethal|blocked|impassable|harmful|thick|hot)"
 _VERY = "(?:far |much )?(?:too |very |really |extremely |definitely |certainly |clearly )?"
 _TO_FLY = "(?: to (?:fly|go|pass)(?: through)?)?"
 _THERE = "(?:there is|there's|there are|i see|i saw|i can see|i heard|i hear|we have)"
@@ -68,6 +68,8 @@ SIGNS: tuple[tuple[re.Pattern[str], Sign], ...] = (
         f"{_I}(?:not|never) (?:checked|looked|seen|been)|(?:have not|had not) (?:checked|looked|seen)",
         "not that (?:i|we) know of|(?:it )?does not matter|do not (?:care|mind|know)|(?:it )?makes no difference",
         "(?:i|we) (?:am|are) not (?:on|at|in|near|there)(?: (?:the )?\\w+)?|(?:i|we) (?:have )?forgot(?:ten)?",
+        r"(?:i|we) (?:cannot|could not) \w+|(?:i|we) (?:am|are) not (?:the|a|an) \w+",
+        "no (?:information|data|news|signal)",
         f"{_I}no (?:way|means) of (?:knowing|telling)|no way (?:to know|to tell|of knowing|of telling)",
         "(?:could|would) not (?:say|tell|know)(?: you)?|(?:give|get) me a (?:minute|second|moment|sec)",
         "beats me|no memory",
@@ -83,7 +85,8 @@ SIGNS: tuple[tuple[re.Pattern[str], Sign], ...] = (
         "just a moment|just a second|give me a second|give me a moment|wait a moment|wait a second|wait|pardon",
         "sorry what",
         "say again|say that again|come again|repeat|repeat that|please repeat|repeat the question",
-        "what was that|what",
+        "what was that",
+        f"what{_END}|what (?:did you|do you|is that|was it|are you) \\w+",
         "i did not hear|i did not get that|i did not understand|i do not understand|which one|your choice",
         "your call",
         "you decide|either|i have no opinion|i cannot see it|cannot make it out|need to check|dunno|skip",
@@ -116,7 +119,8 @@ SIGNS: tuple[tuple[re.Pattern[str], Sign], ...] = (
         "wait outside|the other one|another one|a different one|some other one|the other way|denied",
         "permission denied|red light",
         "(?:it |that |this )?(?:would|will|could) (?:kill|destroy|burn|damage|melt|wreck|crash)",
-        "no way|not at all|not really|not yet|not that one|not this one|not that|not this|not it|of course not",
+        "i forbid (?:it|that)|i do not want (?:that|it|this)|no way|not at all|not really|not yet",
+        "not that one|not this one|not that|not this|not it|of course not",
         "absolutely not|definitely not|certainly not|surely not|better not|rather not|i would not",
         "i do not think so",
         "i do not believe so|do not do (?:that|it)|do not go|do not|you cannot|cannot|you must not|you should not",

@@ -18,9 +18,8 @@ from mintpilot.language.referring import Mention, mention
 
 _LONGEST = 300
 _STRANGE_WORDS = 6
-"""An answer with more words than this that say nothing known is not understood."""
 _STRANGE_WORDS_DERIVED = 2
-"""The same where a Yes is only derived from what is said of the world, or a No stands somewhere in a sentence."""
+_PLAIN_NO = re.compile(r"(?:no|nope|nah|not|never|do not|negative)\b")
 _TAKEN_BACK = re.compile(r"\b(?:(?:do )?not|never|no need to|without)(?: \w+)?\s*$")
 _STATED = (
     (Sign.PASSABLE, GapKind.OBSTACLE, PASSABLE),
@@ -95,6 +94,7 @@ def understand_answer(text: str, question: Question) -> Understood:
 def _read(words: str, text: str, question: Question) -> Understood:
     said = mention(words, question.gaps)
     signs, strange = _signs(said.rest)
+    strange = strange - set(re.findall(r"\w+", question.text.lower()))
     stated = _stated(signs, question)
     if Sign.UNSURE in signs:
         return Understood(reading=Reading.UNSURE)
@@ -105,10 +105,7 @@ def _read(words: str, text: str, question: Question) -> Understood:
     if len(readings) != 1:
         return Understood(reading=Reading.OTHER)
     (reading,) = readings
-    is_derived_yes = reading is Reading.YES and Sign.YES not in signs
-    is_vague_no = reading is Reading.NO and not re.match(r"(?:no|nope|nah|not|never|do not|negative)\b", words)
-    unknown = set(strange) - set(re.findall(r"\w+", question.text.lower()))
-    if len(unknown) > (_STRANGE_WORDS_DERIVED if is_derived_yes or is_vague_no else _STRANGE_WORDS):
+    if len(strange) > _most_strange(reading, signs, words):
         return Understood(reading=Reading.OTHER)
     also = said.literal() if said.values and reading in (Reading.YES, Reading.NO) else None
     return Understood(reading=reading, also=also)
@@ -133,14 +130,26 @@ def _order(words: str) -> tuple[Command | None, str]:
     return None, words.strip(" ,.;!?")
 
 
-def _signs(words: str) -> tuple[set[Sign], list[str]]:
+def _signs(words: str) -> tuple[set[Sign], set[str]]:
     """The signs in the words, and the words that say nothing known."""
     signs: set[Sign] = set()
     for pattern, sign in SIGNS:
         words, found = pattern.subn(" ; ", words)
         if found:
             signs.add(sign)
-    return signs - {Sign.NOISE}, re.findall(r"\w+", words)
+    return signs - {Sign.NOISE}, set(re.findall(r"\w+", words))
+
+
+def _most_strange(reading: Reading, signs: set[Sign], words: str) -> int:
+    """How many words that say nothing known an answer may have.
+
+    Few where a Yes is only derived from what is said of the world, or a No stands somewhere in a sentence.
+    """
+    if reading is Reading.YES and Sign.YES not in signs:
+        return _STRANGE_WORDS_DERIVED
+    if reading is Reading.NO and not _PLAIN_NO.match(words):
+        return _STRANGE_WORDS_DERIVED
+    return _STRANGE_WORDS
 
 
 def _stated(signs: set[Sign], question: Question) -> dict[str, set[str]]:

@@ -8,7 +8,6 @@ from typing import TypeVar
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from mintpilot.core.query import Combine
-from mintpilot.language.answers import Reading
 
 _Form = TypeVar("_Form", bound=BaseModel)
 _LONGEST = 20_000
@@ -37,12 +36,6 @@ class Cuts(_Strict):
     """What a model proposes to ask."""
 
     cuts: list[Cut] = Field(max_length=20)
-
-
-class AnswerReading(_Strict):
-    """What a model takes an answer for."""
-
-    reading: Reading
 
 
 class Steps(_Strict):

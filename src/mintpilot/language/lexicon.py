@@ -51,7 +51,7 @@ ADJECTIVES: dict[str, tuple[str, str]] = {
 
 PEOPLE = _words(
     "person people victim victims survivor survivors casualty casualties patient patients human humans man woman child "
-    "men women children anyone anybody someone somebody everyone everybody"
+    "men women children worker workers colleague firefighter guard anyone anybody someone somebody everyone everybody"
 )
 """Nouns that mean the label ``person``."""
 

@@ -134,3 +134,4 @@ NEAR = re.compile(
 )
 WITH = re.compile(r"\s+(?:with|containing|that has|that have|wearing) (?:the |a |an |some )?(.+)$")
 STATE = re.compile(r"\s+(?:who|that|which) (?:is|are|was|were|may be|might be) (\w+)$")
+RELATIVE = re.compile(r"\s+(?:who|that|which) (?:is|are|was|were)$")

@@ -56,7 +56,7 @@ def singular(noun: str) -> str:
 
 def _describe(words: str, before: Reference | None) -> Reference:
     rest, after = _tail(words)
-    tokens = rest.split()
+    tokens = patterns.RELATIVE.sub("", rest).split()
     every = bool(tokens) and tokens[0] in lexicon.EVERY
     if every and tokens[1:2] == ["of"]:
         tokens = [tokens[0], *tokens[2:]]

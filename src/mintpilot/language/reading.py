@@ -12,7 +12,7 @@ from mintpilot.core.ports import LanguageModel
 from mintpilot.core.query import Question
 from mintpilot.core.task import Task
 from mintpilot.language.answers import Reading, Understood, understand_answer
-from mintpilot.language.forms import AnswerReading, Steps, read_form
+from mintpilot.language.forms import Steps, read_form
 from mintpilot.language.instruction import Capabilities, parse_instruction
 from mintpilot.language.phrases import singular
 
@@ -20,12 +20,15 @@ READING_S = 2.0
 INSTRUCTION_S = 20.0
 _LONGEST = 300
 
-_ANSWER_PROMPT = """\
-A drone asked an operator: "{question}"
-Yes would mean: {yes}. No would mean: {no}.
-The operator said: "{answer}"
-What is the answer to the drone's question? yes, no, unsure, or other if it answers something else.
-Answer with JSON only: {{"reading": "yes"}}"""
+_SHOTS = (
+    ("Is the bridge safe to cross?", "it collapsed last winter", "no", "yes"),
+    ("Is it one of the green bags?", "big fat affirmative", "yes", "no"),
+    ("Is somebody inside the tent?", "let me phone the warden first", "unsure", "unsure"),
+    ("Is it the small lamp?", "my cat is asleep", "other", "other"),
+    ("Is somebody inside the barn?", "my uncle never came out of it", "yes", "no"),
+)
+_TASK = "An operator replied to a drone's question. What does the reply mean: yes, no, unsure or other?"
+_TURNED = "An operator replied to a drone's question. What is the opposite of the reply: yes, no, unsure or other?"
 
 _STEPS_PROMPT = """\
 Rewrite an instruction for a drone as steps. Use only these forms: "go to X", "find X", "pick up X", \
@@ -45,6 +48,17 @@ _STEP_WORDS = frozenset(
     )
     for word in form.split()
 )
+_FILLERS = frozenset(
+    word
+    for form in (
+        "there is are was be being he she they we i you it them him her this that who which its his and then so but",
+        "also please could can would should must want wants need needs needed use have has got get take give fetch",
+        "carry hand",
+        "grab deliver somebody someone in inside on of for with at sits lies stands poor chap fellow us me my our some",
+    )
+    for word in form.split()
+)
+"""Words that an instruction may have without the steps having them."""
 _CANNOT_BE_CHECKED = re.compile(
     r"\b(?:not|never|no|without|avoid\w*|skip\w*|\w+n't|unless|if|except|out of|away from)\b"
 )
@@ -56,7 +70,7 @@ def understand_with_model(
 ) -> Understood:
     """Reads a free answer: by rules, and what they take for OTHER by a model.
 
-    The model is asked twice, the second time with Yes and No exchanged, and counts only where both readings agree.
+    The model is asked twice, the second time for the opposite, and counts only where both readings agree.
     It can never open a region: a Yes about an obstacle must be one that the rules understand.
 
     Args:
@@ -68,14 +82,13 @@ def understand_with_model(
     understood = understand_answer(text, question)
     if understood.reading is not Reading.OTHER or not text.strip() or len(text) > _LONGEST:
         return understood
-    first = _ask(model, text, question.text, question.yes_means, question.no_means, timeout_s)
+    first = _ask(model, text, question, timeout_s, turned=False)
     if first not in (Reading.YES, Reading.NO):
         return replace(understood, reading=first or Reading.OTHER)
     opens = any(g.kind is GapKind.OBSTACLE for g in question.gaps)
     if first is Reading.YES and opens:
         return understood
-    opposite = f"Is it the other way round than this: {question.text}"
-    second = _ask(model, text, opposite, question.no_means, question.yes_means, timeout_s)
+    second = _ask(model, text, question, timeout_s, turned=True)
     agrees = {Reading.YES: Reading.NO, Reading.NO: Reading.YES}[first] is second
     return Understood(reading=first, by="model") if agrees else understood
 
@@ -90,8 +103,8 @@ def parse_with_model(
 ) -> Task:
     """Reads an instruction: by rules, and what they do not understand after a model has put it into documented steps.
 
-    The steps are read by the same rules, and every word in them must be one of the instruction's own: a model can
-    reorder what was said, but not add to it.
+    The steps are read by the same rules. Every word in them must be one of the instruction's own, and every word of
+    the instruction that says something must be in them: a model can reorder what was said, not add to it or drop it.
 
     Raises:
         InputError: neither way gives a task; the rules' own reason.
@@ -102,7 +115,7 @@ def parse_with_model(
         if _CANNOT_BE_CHECKED.search(text.lower()):
             raise
         steps = _steps(model, text, timeout_s)
-        if not steps or _added(steps, text):
+        if not steps or _added(steps, text) or _left_out(steps, text):
             raise
         try:
             task = parse_instruction("; ".join(steps), capabilities, home_m=home_m)
@@ -111,18 +124,19 @@ def parse_with_model(
         return replace(task, instruction=text)
 
 
-def _ask(model: LanguageModel, text: str, question: str, yes: str, no: str, timeout_s: float) -> Reading | None:
-    said = re.sub(r'["\n\r]+', " ", text)
-    prompt = _ANSWER_PROMPT.format(question=question, yes=yes, no=no, answer=said)
+def _ask(model: LanguageModel, text: str, question: Question, timeout_s: float, *, turned: bool) -> Reading | None:
+    said = " ".join(text.split())
+    shots = (f"Question: {q}\nReply: {a}\nAnswer: {no if turned else yes}" for q, a, yes, no in _SHOTS)
+    asked = f"Question: {question.text}\nReply: {said}\nAnswer:"
+    prompt = "\n".join((_TURNED if turned else _TASK, *shots, asked))
     try:
-        completion = model.complete(prompt, schema=AnswerReading, timeout_s=timeout_s)
+        completion = model.complete(prompt, schema=None, timeout_s=timeout_s)
     except MintPilotError:
         return None
     except Exception:  # a stranger's model may fail in any way: then it has no say
         return None
-    found = read_form(completion.text, AnswerReading)
-    # An order must be one that the rules heard: a model gives none.
-    return None if found is None or found.reading is Reading.COMMAND else found.reading
+    found = re.match(r"\W*(yes|no|unsure|other)\b", completion.text.lower())
+    return Reading(found[1]) if found else None
 
 
 def _steps(model: LanguageModel, text: str, timeout_s: float) -> list[str]:
@@ -141,3 +155,9 @@ def _added(steps: list[str], text: str) -> set[str]:
     """Words of the steps that the instruction does not have."""
     own = {singular(w) for w in re.findall(r"\w+", text.lower())}
     return {w for step in steps for w in re.findall(r"\w+", step.lower()) if singular(w) not in own} - _STEP_WORDS
+
+
+def _left_out(steps: list[str], text: str) -> set[str]:
+    """Words of the instruction that say something and that the steps do not have."""
+    said = {singular(w) for step in steps for w in re.findall(r"\w+", step.lower())}
+    return {w for w in re.findall(r"\w+", text.lower()) if singular(w) not in said} - _STEP_WORDS - _FILLERS

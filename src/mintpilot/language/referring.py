@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from mintpilot.core.gap import Candidate, GapKind, KnowledgeGap
@@ -48,20 +48,36 @@ def mention(words: str, gaps: Sequence[KnowledgeGap]) -> Mention:
     if len(targets) != 1:
         return Mention(gap=None, values=frozenset(), rest=words)
     (gap,) = targets
-    named, ruled_out, rest, any_named = set(gap.values), set[str](), [], False
-    for token in re.finditer(r"[\w']+|[,.;!?]", words):
-        fits = {c.id for c in gap.candidates if _ALIKE.get(token[0], token[0]) in _words_of(c)}
-        if not fits or len(fits) == len(gap.candidates):
-            rest.append(token[0])
+    named, ruled_out, rest = set(gap.values), set[str](), list[str]()
+    any_named = False
+    for run in _runs(words, gap):
+        if isinstance(run, str):
+            rest.append(run)
         elif _NOT.search(" ".join(rest[-4:])):
-            ruled_out |= fits
+            ruled_out |= run
             _take_back(rest)
         else:
-            named &= fits
+            named &= run
             any_named = True
     values = named - ruled_out if any_named or ruled_out else set()
     confused = not values and (any_named or bool(ruled_out))
     return Mention(gap=gap, values=frozenset(values), rest=" ".join(rest), confused=confused)
+
+
+def _runs(words: str, gap: KnowledgeGap) -> Iterator[str | set[str]]:
+    """Words that say nothing of the candidates, and for each run of others (``small red``) those that fit all of it."""
+    run: set[str] = set()
+    for token in re.finditer(r"[\w']+|[,.;!?]", words):
+        fits = {c.id for c in gap.candidates if _ALIKE.get(token[0], token[0]) in _words_of(c)}
+        if fits and len(fits) < len(gap.candidates):
+            run = run & fits if run else fits
+            continue
+        if run:
+            yield run
+        run = set()
+        yield token[0]
+    if run:
+        yield run
 
 
 def _words_of(candidate: Candidate) -> frozenset[str]:
