@@ -7,6 +7,7 @@ from mintpilot.elicitation.referents import FARTHEST, LARGER, LEFT, NEAREST, RIG
 
 _ARTICLES = ("the", "a", "an")
 _LINKS = ("with", "near", "in", "on", "at", "by", "behind", "beside", "next", "under", "between", "to", "of", "from")
+_POSSESSIONS = ("accessories", "equipment")
 _ADJECTIVES = ("age", "age_range", "color", "colour", "gender", "material", "shape", "size")
 
 
@@ -66,6 +67,16 @@ def joined(parts: list[str], word: str) -> str:
 def is_adjective(attribute: str) -> bool:
     """Whether a value of that attribute can stand alone: 'it is red', but not 'it is blue' of eyes."""
     return attribute in _ADJECTIVES
+
+
+def is_possession(attribute: str) -> bool:
+    """Whether a value of that attribute is a thing that one has: 'it has glasses'."""
+    return attribute in _POSSESSIONS
+
+
+def inset(text: str) -> str:
+    """A description inside a sentence: with a comma at its end where it has one in the middle."""
+    return f"{text}," if "," in text else text
 
 
 def relation_phrase(name: str, value: str, gap: KnowledgeGap) -> str:

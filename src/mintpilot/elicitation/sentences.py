@@ -7,7 +7,9 @@ from collections.abc import Callable, Mapping
 from mintpilot.core.gap import GapKind, KnowledgeGap
 from mintpilot.core.query import Combine, Literal, Query, SayingKind
 from mintpilot.elicitation.phrases import (
+    inset,
     is_adjective,
+    is_possession,
     joined,
     noun_of,
     plain,
@@ -36,7 +38,10 @@ def sentence(query: Query, gaps: Mapping[str, KnowledgeGap], attempt: int = 1) -
 
 
 def is_sayable(query: Query, gaps: Mapping[str, KnowledgeGap]) -> bool:
-    """Whether the cut fits into `MAX_WORDS` words with everything called by its full description."""
+    """Whether the cut fits into `MAX_WORDS` words, with everything called by its full description, and in one form."""
+    owned = {is_possession(x.saying.name) for x in query.literals if x.saying.kind is SayingKind.ATTRIBUTE}
+    if len(owned) > 1:
+        return False
     return all(len(_sentence(query, gaps, attempt, subject_of).split()) <= MAX_WORDS for attempt in (1, 2))
 
 
@@ -52,7 +57,8 @@ def _sentence(query: Query, gaps: Mapping[str, KnowledgeGap], attempt: int, name
         return _referent(query, gaps[query.gap_ids[0]], first)
     if kinds == {GapKind.VALUE} and len(query.literals) == 1:
         value = query.literals[0].saying.value
-        return f"Is {subjects[0]} {value} or more?" if first else f"Is {subjects[0]} at least {value}?"
+        it = inset(subjects[0])
+        return f"Is {it} {value} or more?" if first else f"Is {it} at least {value}?"
     word = "and" if query.combine is Combine.ALL else "or"
     facts = joined([_fact(x, gaps[x.gap], name) for x in query.literals], word)
     return f"Is it true that {facts}?" if first else f"Is this right: {facts}?"
@@ -61,19 +67,20 @@ def _sentence(query: Query, gaps: Mapping[str, KnowledgeGap], attempt: int, name
 def _obstacles(subjects: list[str], combine: Combine, first: bool) -> str:
     if len(subjects) == 1:
         s = subjects[0]
-        return f"Is {s} safe to fly through?" if first else f"Can the drone fly through {s} without danger?"
+        return f"Is {inset(s)} safe to fly through?" if first else f"Can the drone fly safely through {s}?"
     if combine is Combine.ANY:
         either = joined(subjects, "or")
         return f"Is it safe to fly through {either}?" if first else f"Can the drone fly safely through {either}?"
     both = "both" if len(subjects) == 2 else "all"
     every = joined(subjects, "and")
-    return f"Are {every} {both} safe to fly through?" if first else f"Can the drone fly safely through {both} {every}?"
+    return f"Are {inset(every)} {both} safe to fly through?" if first else f"Is it safe to fly through {both}, {every}?"
 
 
 def _rooms(subjects: list[str], combine: Combine, first: bool) -> str:
     if combine is Combine.ALL and len(subjects) > 1:
         every = joined(subjects, "and")
-        return f"Are there people inside {every}, each of them?" if first else f"Is there a person in each: {every}?"
+        both = "both" if len(subjects) == 2 else "all of"
+        return f"Are there people in {both} {every}?" if first else f"Is somebody inside each of these: {every}?"
     either = joined(subjects, "or")
     return f"Is somebody inside {either}?" if first else f"Is there a person in {either}?"
 
@@ -103,11 +110,14 @@ def _attributes(query: Query, gap: KnowledgeGap, word: str, first: bool) -> str:
             return f"Is it one of the {values[0]} {plural(noun)}?" if first else f"Is the {noun} you mean {values[0]}?"
         both = "both " if word == "and" and len(sayings) == 2 else ""
         return f"Is it {both}{joined(values, word)}?" if first else f"Is the one you mean {both}{joined(values, word)}?"
+    it = "it" if first else "the one that you mean"
+    if all(is_possession(s.name) for s in sayings):
+        return f"Does {it} have {joined(values, word)}?"
     if len({s.name for s in sayings}) == 1:
         facts = f"{plain(sayings[0].name)} {joined(values, word)}"
-    else:
-        facts = joined([f"{plain(s.name)} {v}" for s, v in zip(sayings, values, strict=True)], word)
-    return f"Does it have {facts}?" if first else f"Does the one that you mean have {facts}?"
+        return f"Is its {facts}?" if first else f"Does {it} have {facts}?"
+    facts = joined([f"{plain(s.name)} {v}" for s, v in zip(sayings, values, strict=True)], f"{word} its")
+    return f"Is its {facts}?" if first else f"Does the one that you mean have {facts.replace(' its ', ' ')}?"
 
 
 def _fact(literal: Literal, gap: KnowledgeGap, name: Callable[[KnowledgeGap], str]) -> str:

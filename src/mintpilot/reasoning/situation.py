@@ -9,7 +9,7 @@ from mintpilot.core.geometry import Bools, Floats
 from mintpilot.core.mission import AskingSettings
 from mintpilot.core.plan import Plan
 from mintpilot.core.tree import Mint
-from mintpilot.reasoning.classes import demands
+from mintpilot.reasoning.classes import cheapest_under, demands
 from mintpilot.reasoning.tables import mask_of
 
 MAX_CELLS = 1 << 22
@@ -31,7 +31,7 @@ def may_fail(plan: Plan, belief: Belief, floor: float) -> bool:
 
 
 def regret_matrix(mint: Mint, settings: AskingSettings) -> Floats:
-    """Seconds lost by flying the plan of each class under each joint hypothesis, instead of the best of all classes.
+    """Seconds lost by flying the plan of each class under each joint hypothesis, instead of the best one.
 
     Shape (m, n): classes by the hypotheses of `Mint.support`. Where a plan would fail it loses
     ``settings.failure_price_s``; so does staying on the ground where something could have been flown.
@@ -39,14 +39,12 @@ def regret_matrix(mint: Mint, settings: AskingSettings) -> Floats:
     support = mint.support
     rows = min(len(mint.classes), max(1, MAX_CELLS // max(1, support.size)))
     cost = np.full((rows, support.size), np.inf)
-    best = np.full(support.size, np.inf)
-    for number, group in enumerate(mint.classes):
+    # Measured from what no plan can undercut: a class's own plan may itself be a little dearer than the best.
+    best = cheapest_under(mint).ravel()[support]
+    for number, group in enumerate(mint.classes[:rows]):
         if group.plan is not None:
             fine = _class_succeeds(number, group.plan, mint).ravel()[support]
-            row = np.where(fine, group.plan.cost_s, np.inf)
-            best = np.minimum(best, row)
-            if number < rows:
-                cost[number] = row
+            cost[number] = np.where(fine, group.plan.cost_s, np.inf)
     # Where nothing can be flown, only staying on the ground loses nothing.
     hopeless = np.isinf(best)
     lost: Floats = np.where(np.isinf(cost), settings.failure_price_s, cost - np.where(hopeless, 0.0, best))

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
+from numpy.typing import NDArray
 
 from mintpilot.core.errors import LimitError
 from mintpilot.core.geometry import Bools, Floats, Ints
@@ -55,7 +58,8 @@ class _Programme:
         self.row_of: Ints
         self.cuts, self.row_of = np.unique(kinds[:cuts].astype(bool), axis=0, return_inverse=True)
         self.weighted_cuts = self.cuts * self.mass
-        self.good = kinds[cuts:-1].astype(float)
+        # What no cut tells apart ends the asking just as one good plan does.
+        self.good = np.vstack([kinds[cuts:-1].astype(float), _indistinct(kinds[:cuts], kinds[-1])])
         classes = np.unique(kinds[-1])
         self.member = (kinds[-1][:, None] == classes[None, :]).astype(float)
         self.enough = 1 - settings.alpha
@@ -130,6 +134,14 @@ class _Programme:
             bits = np.maximum(bits, entropy - self.slack)
         least: Floats = np.where(stop, 0.0, np.maximum(1.0, bits))
         return least
+
+
+def _indistinct(cuts: NDArray[Any], class_of: NDArray[Any]) -> Floats:
+    """Rows of truth values: the hypotheses that no cut tells apart, for each such group of more than one class."""
+    group_of = np.unique(cuts, axis=1, return_inverse=True)[1].ravel()
+    groups = [group_of == g for g in range(int(group_of.max()) + 1)]
+    rows = [row.astype(float) for row in groups if np.unique(class_of[row]).size > 1]
+    return np.array(rows) if rows else np.zeros((0, len(class_of)))
 
 
 def _fano(alpha: float, classes: int) -> float:

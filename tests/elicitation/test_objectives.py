@@ -1,0 +1,142 @@
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from mintpilot.core.errors import LimitError, UnknownNameError
+from mintpilot.core.mission import AskingSettings
+from mintpilot.core.ports import QuerySituation
+from mintpilot.elicitation.objectives import OBJECTIVES, Ec2, InformationGain, Optimal, Random, query_objective
+from mintpilot.elicitation.objectives.value_of_information import ValueOfInformation
+
+EXACT = AskingSettings(delta_c_s=0.0, alpha=0.0)
+
+
+def situation(seed: int, error: float = 0.0, n: int = 8, classes: int = 3, cuts: int = 6) -> QuerySituation:
+    rng = np.random.default_rng(seed)
+    class_of = np.concatenate([np.arange(classes), rng.integers(classes, size=n - classes)])
+    return QuerySituation(
+        probability=rng.dirichlet(np.ones(n)),
+        class_of=class_of,
+        regret_s=np.where(class_of[None, :] == np.arange(classes)[:, None], 0.0, rng.uniform(1, 9, (classes, n))),
+        yes=rng.random((cuts, n)) < 0.5,
+        settings=replace(EXACT, answer_error=error),
+    )
+
+
+def brute_entropy(p: list[float]) -> float:
+    return -sum(x * np.log2(x) for x in p if x > 0)
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.integers(0, 2**32 - 1), st.sampled_from([0.0, 0.1, 0.4]))
+def test_information_gain_is_mutual_information(seed: int, error: float) -> None:
+    s = situation(seed, error)
+    for cut, gain in zip(s.yes, InformationGain().scores(s), strict=True):
+        joint = np.zeros((2, 3))
+        for p, c, y in zip(s.probability, s.class_of, cut, strict=True):
+            joint[int(y), c] += p * (1 - error)
+            joint[1 - int(y), c] += p * error
+        classes, answers = joint.sum(axis=0), joint.sum(axis=1)
+        expected = brute_entropy(classes) + brute_entropy(answers) - brute_entropy(joint.ravel())
+        assert gain == pytest.approx(max(expected, 0), abs=1e-9)
+        assert 0 <= gain <= 1
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.integers(0, 2**32 - 1))
+def test_ec2_counts_the_edges_that_are_cut(seed: int) -> None:
+    s = situation(seed)
+    n = len(s.probability)
+    pairs = [(i, j) for i in range(n) for j in range(i) if s.class_of[i] != s.class_of[j]]
+    weight = {(i, j): s.probability[i] * s.probability[j] for i, j in pairs}
+    for cut, score in zip(s.yes, Ec2().scores(s), strict=True):
+        yes = s.probability[cut].sum()
+        expected = 0.0
+        for answer, p in ((True, yes), (False, 1 - yes)):
+            gone = sum(w for (i, j), w in weight.items() if cut[i] != answer or cut[j] != answer)
+            expected += p * gone
+        assert score == pytest.approx(expected / sum(weight.values()), abs=1e-9)
+
+
+@pytest.mark.parametrize("error", [0.0, 0.1, 0.3])
+def test_a_cut_that_tells_nothing_is_worth_nothing(error: float) -> None:
+    s = situation(1, error)
+    s = replace(s, yes=np.vstack([np.ones(8, bool), np.zeros(8, bool)]))
+    for objective in (InformationGain(), Ec2(), ValueOfInformation(), Random()):
+        assert (objective.scores(s) <= 1e-9).all()
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.integers(0, 2**32 - 1), st.sampled_from([0.0, 0.2]))
+def test_value_of_information_is_the_fall_of_expected_regret(seed: int, error: float) -> None:
+    s = situation(seed, error)
+    now = (s.regret_s @ s.probability).min()
+    for cut, value in zip(s.yes, ValueOfInformation().scores(s), strict=True):
+        heard = np.where(cut, 1 - error, error)
+        after = sum((s.regret_s @ (s.probability * w)).min() for w in (heard, 1 - heard))
+        assert value == pytest.approx(max(now - after, 0), abs=1e-8)
+
+
+def test_the_price_of_a_question_is_taken_off() -> None:
+    s = situation(5)
+    dear = replace(s, settings=replace(s.settings, question_price_s=2.0))
+    assert ValueOfInformation().scores(dear) == pytest.approx(ValueOfInformation().scores(s) - 2.0)
+
+
+def fewest(s: QuerySituation, alive: frozenset[int]) -> float:
+    """Plain recursion over all ways to ask."""
+    if len({s.class_of[i] for i in alive}) == 1 or any(all(row[i] <= 0 for i in alive) for row in s.regret_s):
+        return 0.0
+    total, best = sum(s.probability[i] for i in alive), np.inf
+    for cut in s.yes:
+        parts = [frozenset(i for i in alive if cut[i]), frozenset(i for i in alive if not cut[i])]
+        if all(parts):
+            best = min(best, 1 + sum(sum(s.probability[i] for i in p) / total * fewest(s, p) for p in parts))
+    return 0.0 if np.isinf(best) else best
+
+
+@settings(max_examples=25, deadline=None)
+@given(st.integers(0, 2**32 - 1))
+def test_optimal_is_optimal(seed: int) -> None:
+    s = situation(seed, n=6, cuts=5)
+    best = max(Optimal().scores(s))
+    expected = fewest(s, frozenset(range(6)))
+    assert (1 / best if best else 0.0) == pytest.approx(expected)
+
+
+def test_optimal_refuses_politely() -> None:
+    with pytest.raises(LimitError, match="use 'information-gain'"):
+        Optimal().scores(situation(0, error=0.1))
+    with pytest.raises(LimitError, match="raise the bound"):
+        Optimal(max_states=3).scores(situation(0, n=30, classes=9, cuts=30))
+
+
+def test_an_exclusive_or_does_not_end_the_asking() -> None:
+    # The class is the exclusive or of two fair gaps: neither tells anything of it alone.
+    s = QuerySituation(
+        probability=np.full(4, 0.25),
+        class_of=np.array([0, 1, 1, 0]),
+        regret_s=np.array([[0.0, 9.0, 9.0, 0.0], [9.0, 0.0, 0.0, 9.0]]),
+        yes=np.array([[True, True, False, False], [True, False, True, False]]),
+        settings=EXACT,
+    )
+    assert (InformationGain().scores(s) > 0).all()
+    assert (Ec2().scores(s) > 0).all()
+
+
+def test_random_is_seeded() -> None:
+    s = situation(3)
+    one, other = (Random(np.random.default_rng(7)).scores(s) for _ in range(2))
+    assert np.array_equal(one, other)
+
+
+def test_objectives_are_found_by_name() -> None:
+    for name, kind in OBJECTIVES.items():
+        assert type(query_objective(name)) is kind
+    with pytest.raises(UnknownNameError, match="information-gain"):
+        query_objective("information-gian")
