@@ -16,8 +16,8 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from mintpilot.cli.exits import ExitCode
+from mintpilot.simulation.engine import GL_PACKAGES
 
-GL_PACKAGES = "libegl1 libegl-mesa0 libgl1-mesa-dri"
 _DRAW = """
 import mujoco
 model = mujoco.MjModel.from_xml_string("<mujoco><worldbody><geom size='1'/></worldbody></mujoco>")

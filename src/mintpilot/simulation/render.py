@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from mintpilot.core.errors import UnknownNameError
 from mintpilot.core.geometry import Floats
 from mintpilot.core.observation import CameraModel, Frame
-from mintpilot.simulation.engine import drawing_context, load_mujoco
+from mintpilot.simulation.engine import drawing_context, drawing_resources, load_mujoco
 from mintpilot.simulation.props import CEILING_GROUP
 from mintpilot.simulation.scene import Scene
 from mintpilot.simulation.sensor import SensorSettings, corrupt
@@ -53,7 +53,7 @@ class SceneRenderer:
         self._size = (width, height)
         self._sensor = sensor or SensorSettings()
         self._gl: Any = drawing_context(self._mujoco, max(width, 1280), max(height, 960))
-        self._context: Any = self._mujoco.MjrContext(model, self._mujoco.mjtFontScale.mjFONTSCALE_100.value)
+        self._context: Any = drawing_resources(self._mujoco, model)
         self._mujoco.mjr_setBuffer(self._mujoco.mjtFramebuffer.mjFB_OFFSCREEN.value, self._context)
         self._context.readDepthMap = self._mujoco.mjtDepthMap.mjDEPTH_ZEROFAR
         self._scene: Any = self._mujoco.MjvScene(model, maxgeom=10000)
