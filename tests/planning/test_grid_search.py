@@ -35,16 +35,19 @@ def read_3dmap(path: Path) -> np.ndarray:
 
 def no_corner_graph(free: np.ndarray) -> csr_matrix:
     """Every move written out: the oracle's own statement of the rule."""
+    padded = np.pad(free, 1)
+    number = np.pad(np.arange(free.size).reshape(free.shape), 1)
     rows, columns, lengths = [], [], []
-    inside = {tuple(c) for c in np.argwhere(free)}
-    for cell in inside:
-        for step in itertools.product((-1, 0, 1), repeat=3):
-            block = itertools.product(*({0, s} for s in step))
-            if any(step) and all(tuple(np.add(cell, part)) in inside for part in block):
-                rows.append(np.ravel_multi_index(cell, free.shape))
-                columns.append(np.ravel_multi_index(tuple(np.add(cell, step)), free.shape))
-                lengths.append(np.linalg.norm(step))
-    return csr_matrix((lengths, (rows, columns)), shape=(free.size, free.size))
+    for step in itertools.product((-1, 0, 1), repeat=3):
+        if not any(step):
+            continue
+        block = itertools.product(*({0, -s} for s in step))
+        legal = np.logical_and.reduce([np.roll(padded, part, axis=(0, 1, 2)) for part in block])
+        rows.append(number[legal])
+        columns.append(np.roll(number, tuple(-s for s in step), axis=(0, 1, 2))[legal])
+        lengths.append(np.full(int(legal.sum()), np.linalg.norm(step)))
+    triple = (np.concatenate(lengths), (np.concatenate(rows), np.concatenate(columns)))
+    return csr_matrix(triple, shape=(free.size, free.size))
 
 
 def check_path(free: np.ndarray, start: tuple, goal: tuple, cost: float, cells: np.ndarray) -> None:
