@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -56,13 +57,14 @@ def hall(smoke: Knowledge = Knowledge.OPEN, *, label: str = "box", description: 
         id="room-1", door_m=Box(lo_m=(17.0, 10.9, 0.0), hi_m=(18.0, 11.2, 2.1)), viewpoint_m=(17.5, 9.8, 1.5),
         description="the closed room with the brown door", best_view=(3, 20, 20, 60, 100),
     )  # fmt: skip
+    places = ((10.0, 11.6, "red"), (6.0, 12.0, "blue"), (15.0, 2.0, "yellow"))
     boxes = tuple(
         MapObject(
             id=f"{label}-{number}", label=label, sightings=4, best_view=(number, 30, 62, 58, 92),
             box_m=Box(lo_m=(x, y, 0.0), hi_m=(x + 0.6, y + 0.6, 0.6)),
             attributes=(Attribute(name="colour", value=colour), Attribute(name="size", value="small")),
         )
-        for number, (x, y, colour) in enumerate(((10.0, 11.6, "red"), (6.0, 12.0, "blue"), (15.0, 2.0, "yellow")), start=1)
+        for number, (x, y, colour) in enumerate(places, start=1)
     )  # fmt: skip
     return SemanticMap(frame=frame, cells=cells, objects=boxes, regions=(region,), rooms=(room,))
 
@@ -70,7 +72,7 @@ def hall(smoke: Knowledge = Knowledge.OPEN, *, label: str = "box", description: 
 def way(points: list[tuple[float, float]], enters: frozenset[str] = frozenset()) -> Plan:
     """A plan at 1.5 m height through these points, one metre a second."""
     corners = np.array([(x, y, 1.5) for x, y in points])
-    path = np.concatenate([np.linspace(a, b, 20) for a, b in zip(corners, corners[1:], strict=False)])
+    path = np.concatenate([np.linspace(a, b, 20) for a, b in pairwise(corners)])
     length = float(np.linalg.norm(np.diff(path, axis=0), axis=1).sum())
     stop = Stop(id="goal-1", action=Action.GO, sites=(Site(position_m=(10.3, 11.9, 0.3), label="box-1"),))
     leg = Leg(stop=stop, site=stop.sites[0], path_m=path, length_m=length, duration_s=length + 2)
@@ -87,7 +89,7 @@ def flight(plan: Plan, *, share: float = 1.0, start_s: float = 0.0) -> tuple[Tra
     )  # fmt: skip
     count = max(2, int(len(path) * share))
     end = FlightEnd.ARRIVED if share == 1 else FlightEnd.INTERRUPTED
-    flown = path[:count] + (0.03, 0.0, 0.0)
+    flown = path[:count] + np.array((0.03, 0.0, 0.0))
     return trajectory, FlightLog(end=end, time_s=time[:count] + start_s, position_m=flown, reference_m=path[:count])
 
 
@@ -151,7 +153,7 @@ def tell(*, label: str = "box", description: str = "the grey smoke near the gate
         instruction=mission.instruction, subgoals=(SubGoal(action=Action.GO, reference=Reference(phrase="box")),)
     )
     before = hall(label=label, description=description)
-    problem = PlanningProblem(map=before, start_m=mission.start_m, stops=chosen.legs[0].stop and (chosen.legs[0].stop,),
+    problem = PlanningProblem(map=before, start_m=mission.start_m, stops=(chosen.legs[0].stop,),
                               gaps=(smoke, target), limits=mission.limits)  # fmt: skip
     known = Knowledge.YES if reply is Reply.YES else Knowledge.NO
     survey, survey_log = flight(way([(2, 2), (18, 2), (18, 8)]))

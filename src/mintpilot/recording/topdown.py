@@ -14,6 +14,8 @@ from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Rectangle
+from matplotlib.ticker import MaxNLocator
+from matplotlib.transforms import ScaledTranslation
 
 from mintpilot.core.geometry import Bools, Floats, Vec3
 from mintpilot.core.semantic_map import Cell, Knowledge, Region, SemanticMap
@@ -34,6 +36,8 @@ _PLAIN = {
     "purple": "#7d4bb5", "pink": "#e58fb4",
 }  # fmt: skip
 """Colour words of objects."""
+_USUAL = {"fire": "#f2701d", "person": "#56b4e9", "injured": "#56b4e9"}
+"""Colours of things without a colour word, by a word of their class."""
 _STRUCTURE = {"wall", "partition", "rack", "shelf", "pillar", "floor", "ceiling", "rubble"}
 """Classes that are part of the building: their voxels show them."""
 _MAX_LABELS = 24
@@ -117,16 +121,19 @@ def draw_topdown(view: TopDown) -> Figure:
     keys += _rooms(axes, view.map, labels)
     keys += _paths(axes, view)
     _places(axes, view, labels)
-    _objects(axes, view.map, labels)
+    _objects(axes, view, labels)
     labels.draw()
     axes.set_xlabel("east, m", color=INK)
     axes.set_ylabel("north, m", color=INK)
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_major_locator(MaxNLocator(nbins=10, steps=[1, 2, 5, 10], integer=True))
     axes.tick_params(colors="#566472", length=3)
     for side in axes.spines.values():
         side.set_color("#c6ced6")
-    figure.legend(
-        handles=keys, loc="upper center", bbox_to_anchor=(0.5, 0.03), ncols=4, frameon=False, fontsize=8.5,
-        handlelength=2.6, columnspacing=1.8,
+    below = axes.transAxes + ScaledTranslation(0, -0.5, figure.dpi_scale_trans)
+    axes.legend(
+        handles=keys, loc="upper center", bbox_to_anchor=(0.5, 0.0), bbox_transform=below, ncols=4,
+        frameon=False, fontsize=8.5, handlelength=2.6, columnspacing=1.8,
     )  # fmt: skip
     return figure
 
@@ -185,8 +192,10 @@ def _regions(axes: Axes, seen: SemanticMap, labels: Labels) -> list[Patch | Line
         half = seen.frame.resolution_m / 2
         xs = np.arange(mask.shape[1]) * half + x0 - 2 * half + half / 2
         ys = np.arange(mask.shape[0]) * half + y0 - 2 * half + half / 2
-        filled = axes.contourf(xs, ys, mask, levels=(0.5, 1.5), colors=[colour], alpha=0.30, hatches=[hatch])
-        filled.set_edgecolor(colour)
+        axes.contourf(xs, ys, mask, levels=(0.5, 1.5), colors=[colour], alpha=0.25)
+        hatched = axes.contourf(xs, ys, mask, levels=(0.5, 1.5), colors="none", hatches=[hatch])
+        hatched.set_edgecolor(colour)
+        hatched.set_linewidth(0)
         axes.contour(xs, ys, mask, levels=(0.5,), colors=[colour], linewidths=1.6)
         keys[region.passable] = Patch(facecolor=colour + "4d", edgecolor=colour, hatch=hatch, label=f"region {words}")
         ys_in, xs_in = np.nonzero(mask)
@@ -236,13 +245,15 @@ def _places(axes: Axes, view: TopDown, labels: Labels) -> None:
         labels.add(place[0], place[1], f"{number}. {printable(label)}", strong=True)
 
 
-def _objects(axes: Axes, seen: SemanticMap, labels: Labels) -> None:
-    things = [thing for thing in seen.objects if thing.label not in _STRUCTURE]
+def _objects(axes: Axes, view: TopDown, labels: Labels) -> None:
+    goals = {label for label, _ in view.goals}
+    things = [thing for thing in view.map.objects if thing.label not in _STRUCTURE]
     for count, thing in enumerate(things):
         low, size = thing.box_m.lo_m, thing.box_m.size_m
-        named = next((_PLAIN[colour] for colour in sorted(thing.values("colour")) if colour in _PLAIN), "#c9b79c")
+        usual = next((_USUAL[word] for word in thing.label.lower().split() if word in _USUAL), "#c9b79c")
+        named = next((_PLAIN[colour] for colour in sorted(thing.values("colour")) if colour in _PLAIN), usual)
         axes.add_patch(
             Rectangle((low[0], low[1]), size[0], size[1], facecolor=named, edgecolor=INK, linewidth=0.9, zorder=4)
         )
-        if count < _MAX_LABELS:
+        if count < _MAX_LABELS and thing.id not in goals:
             labels.add(thing.position_m[0], thing.position_m[1], printable(thing.id), strong=False)

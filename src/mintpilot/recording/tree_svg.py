@@ -11,10 +11,10 @@ from mintpilot.recording.record import TreeRecord
 from mintpilot.recording.tree_drawing import details, percent, prune
 from mintpilot.recording.words import printable
 
-_CARD, _GAP, _LINE, _PAD, _BETWEEN = 248.0, 66.0, 17.0, 11.0, 14.0
+_CARD, _GAP, _LINE, _PAD, _BETWEEN = 290.0, 62.0, 17.0, 11.0, 14.0
 """Widths of a card and of the space between columns, height of a line, padding, space between rows; pixels."""
-_LETTERS = 36
-"""Letters in a line of a card."""
+_BOLD, _PLAIN = 31, 36
+"""Letters in a line of a card, by weight; few enough for the widest of the fonts."""
 _STYLE = """
 .mint { font: 13px system-ui, -apple-system, "Segoe UI", "DejaVu Sans", sans-serif; }
 .mint rect { fill: var(--card, #ffffff); stroke: var(--line, #c6ced6); stroke-width: 1.2; }
@@ -81,12 +81,12 @@ def tree_svg(tree: TreeRecord, *, max_nodes: int = 60) -> str:
 
 
 def _card(node: TreeRecord, depth: int) -> _Card:
-    lines = [("words", line) for line in _wrapped(node.words[:1].upper() + node.words[1:], 3)]
+    lines = [("words", line) for line in _wrapped(node.words[:1].upper() + node.words[1:], _BOLD, 3)]
     lines.append(("odds", f"{percent(node.probability)} likely" if depth else "Before any question"))
     for fact in details(node):
         style = "branch fact" if node.branch_on and fact.endswith(node.branch_words) else "fact"
         style = "plan fact" if fact.startswith(("fly:", "flown:")) else style
-        lines.extend((style, line) for line in _wrapped(fact, 2))
+        lines.extend((style, line) for line in _wrapped(fact, _PLAIN if style == "fact" else _BOLD, 2))
     return _Card(node=node, lines=lines, depth=depth, children=[_card(child, depth + 1) for child in node.children])
 
 
@@ -136,5 +136,5 @@ def _draw(card: _Card) -> str:
     return f'<g class="{style}">{box}{texts}</g>'
 
 
-def _wrapped(text: str, rows: int) -> list[str]:
-    return textwrap.wrap(printable(text), _LETTERS, max_lines=rows, placeholder=" …") or [""]
+def _wrapped(text: str, letters: int, rows: int) -> list[str]:
+    return textwrap.wrap(printable(text), letters, max_lines=rows, placeholder=" …") or [""]

@@ -1,0 +1,242 @@
+"""The terminal operator on real pipes and a real pseudo-terminal."""
+
+from __future__ import annotations
+
+import io
+import os
+import pty
+import select
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from hypothesis import example, given
+from hypothesis import strategies as st
+from rich.console import Console
+
+from mintpilot.core.errors import DeviceError
+from mintpilot.core.query import Command, Question, Reply
+from mintpilot.interaction.replies import understand
+from mintpilot.interaction.terminal import TerminalOperator
+
+from .test_scripted import question
+
+ROOT = Path(__file__).parents[2]
+ASKED = Question(
+    query=question(("x", {"a"})).query, text="Can I fly through the \x1b[31mgrey smoke?", gaps=(),
+    yes_means="I fly through it", no_means="I fly around it",
+)  # fmt: skip
+
+
+class Pipe:
+    """The reading end of a pipe; what is written comes from the test."""
+
+    def __init__(self) -> None:
+        self.reads, self.writes = os.pipe()
+
+    def fileno(self) -> int:
+        return self.reads
+
+    def say(self, data: bytes) -> None:
+        os.write(self.writes, data)
+
+    def end(self) -> None:
+        os.close(self.writes)
+        self.writes = -1
+
+
+@pytest.fixture
+def pipe() -> Iterator[Pipe]:
+    made = Pipe()
+    yield made
+    os.close(made.reads)
+    if made.writes >= 0:
+        made.end()
+
+
+def operator(pipe: Pipe) -> tuple[TerminalOperator, io.StringIO]:
+    shown = io.StringIO()
+    return TerminalOperator(Console(file=shown, width=100), pipe), shown
+
+
+@pytest.mark.parametrize(
+    ("typed", "reply"),
+    [(b"y", Reply.YES), (b" YES!", Reply.YES), (b"n", Reply.NO), (b"No.", Reply.NO), (b"?", Reply.UNSURE),
+     (b"unsure", Reply.UNSURE), ("don’t know".encode(), Reply.UNSURE), (b"I  don't know", Reply.UNSURE)],
+)  # fmt: skip
+def test_replies(pipe, typed, reply):
+    asked, shown = operator(pipe)
+    pipe.say(typed + b"\n")
+    answer = asked.ask(ASKED, 5.0)
+    assert answer.reply is reply
+    assert answer.command is None
+    assert 0 <= answer.latency_s < 5
+    text = shown.getvalue()
+    assert "I fly through it" in text
+    assert "I fly around it" in text
+    assert "\x1b" not in text
+
+
+@pytest.mark.parametrize(
+    ("typed", "command"),
+    [(b"stop", Command.HOLD), (b"HOLD!", Command.HOLD), (b"abort", Command.ABORT), (b"return", Command.RETURN)],
+)
+def test_orders_are_obeyed_at_once(pipe, typed, command):
+    asked, _ = operator(pipe)
+    pipe.say(typed + b"\n")
+    answer = asked.ask(ASKED, 5.0)
+    assert answer.command is command
+    assert answer.reply is not Reply.YES
+
+
+def test_garbage_is_asked_again_within_the_patience(pipe):
+    asked, shown = operator(pipe)
+    pipe.say(b"\xff\xfe\x00\n\nyesno\n[red]y[/red]\nyes\n")
+    assert asked.ask(ASKED, 5.0).reply is Reply.YES
+    assert shown.getvalue().count("Please type y (yes), n (no)") == 4
+
+
+def test_garbage_alone_ends_in_silence(pipe):
+    asked, _ = operator(pipe)
+    pipe.say(b"maybe\n")
+    answer = asked.ask(ASKED, 0.2)
+    assert answer.reply is Reply.TIMEOUT
+    assert answer.latency_s >= 0.2
+
+
+def test_silence_ends_and_half_a_word_is_no_answer_to_the_next_question(pipe):
+    asked, _ = operator(pipe)
+    pipe.say(b"ye")
+    assert asked.ask(ASKED, 0.1).reply is Reply.TIMEOUT
+    pipe.say(b"s\n")
+    assert asked.ask(ASKED, 0.1).reply is Reply.TIMEOUT
+
+
+def test_an_endless_line_is_not_kept(pipe):
+    asked, _ = operator(pipe)
+    pipe.say(b"y" * 60_000 + b"\n")
+    assert asked.ask(ASKED, 0.5).reply is Reply.TIMEOUT
+
+
+def test_lines_of_a_pipe_answer_one_question_each_and_its_end_is_silence(pipe):
+    asked, _ = operator(pipe)
+    pipe.say(b"y\nn\n?")
+    pipe.end()
+    replies = [asked.ask(ASKED, 30.0).reply for _ in range(5)]
+    assert replies == [Reply.YES, Reply.NO, Reply.UNSURE, Reply.TIMEOUT, Reply.TIMEOUT]
+
+
+def test_messages_are_shown_without_control_codes(pipe):
+    asked, shown = operator(pipe)
+    asked.tell("[bold]new\x1b[2J thing")
+    assert shown.getvalue() == "[bold]new [2J thing\n"
+
+
+def test_a_closed_input_is_refused():
+    with pytest.raises(DeviceError, match="scripted operator"):
+        TerminalOperator(Console(file=io.StringIO()), io.StringIO())
+
+
+@given(st.text(max_size=12))
+@example("yes no")
+@example("not yes")
+@example("y n")
+@example("yep")
+def test_only_the_listed_words_mean_yes(text):
+    if understand(text) is Reply.YES:
+        assert text.strip().rstrip(".! ").lower() in ("y", "yes")
+
+
+CHILD = f"""
+import sys
+sys.path.insert(0, {str(ROOT)!r})
+from rich.console import Console
+from tests.interaction.test_terminal import ASKED
+from mintpilot.interaction.terminal import TerminalOperator
+asked = TerminalOperator(Console(), sys.stdin)
+print("ready", flush=True)
+try:
+    for _ in range(2):
+        print("got", asked.ask(ASKED, 20.0).reply.value, flush=True)
+except KeyboardInterrupt:
+    print("interrupted", flush=True)
+"""
+
+
+class Terminal:
+    """A child process at a pseudo-terminal of its own."""
+
+    def __init__(self) -> None:
+        pid, self.fd = pty.fork()
+        if pid == 0:
+            os.execv(sys.executable, [sys.executable, "-c", CHILD])
+        self.pid = pid
+        self.seen = ""
+
+    def expect(self, words: str, *, times: int = 1) -> None:
+        end = time.monotonic() + 60
+        while self.seen.count(words) < times:
+            assert select.select([self.fd], [], [], max(0.0, end - time.monotonic()))[0], (
+                f"no '{words}' in {self.seen!r}"
+            )
+            self.seen += os.read(self.fd, 4096).decode("utf-8", "replace")
+
+    def type(self, keys: bytes) -> None:
+        os.write(self.fd, keys)
+
+    def leave(self) -> None:
+        os.close(self.fd)
+        os.waitpid(self.pid, 0)
+
+
+@pytest.fixture
+def terminal() -> Iterator[Terminal]:
+    made = Terminal()
+    yield made
+    made.leave()
+
+
+def test_at_a_terminal_only_what_is_typed_after_the_question_answers_it(terminal):
+    terminal.expect("Your answer")
+    terminal.type(b"y\nn\nn\n")
+    terminal.expect("got yes")
+    terminal.expect("Your answer", times=2)
+    terminal.type(b"?\n")
+    terminal.expect("got unsure")
+    assert "got no" not in terminal.seen
+
+
+def test_ctrl_c_at_a_terminal_ends_the_wait_at_once(terminal):
+    terminal.expect("Your answer")
+    terminal.type(b"\x03")
+    terminal.expect("interrupted")
+
+
+def test_ctrl_d_at_a_terminal_is_silence(terminal):
+    terminal.expect("Your answer")
+    terminal.type(b"\x04")
+    terminal.expect("got timeout", times=2)
+
+
+def test_an_answer_that_comes_late_is_waited_for(pipe):
+    asked, _ = operator(pipe)
+    threading.Timer(0.15, pipe.say, [b"no\n"]).start()
+    answer = asked.ask(ASKED, 10.0)
+    assert answer.reply is Reply.NO
+    assert answer.latency_s >= 0.1
+
+
+def test_a_signal_while_waiting_does_not_hang(pipe):
+    """Ctrl-C sent as a signal to a process that waits at a pipe."""
+    process = subprocess.Popen([sys.executable, "-c", CHILD], stdin=pipe.fileno(), stdout=subprocess.PIPE)
+    assert process.stdout is not None
+    assert process.stdout.readline() == b"ready\n"
+    while b"Your answer" not in os.read(process.stdout.fileno(), 4096):
+        pass
+    process.send_signal(signal.SIGINT)
+    assert b"interrupted" in process.communicate(timeout=60)[0]

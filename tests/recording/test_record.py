@@ -1,0 +1,148 @@
+"""The record's figures, its short form, and what is refused when it is read."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+
+import numpy as np
+import pytest
+
+from mintpilot.core import events as ev
+from mintpilot.core.errors import RecordError
+from mintpilot.core.query import Reply
+from mintpilot.recording.build import build_record, flight_record
+from mintpilot.recording.event_json import MAX_ROWS, event_line
+from mintpilot.recording.history import History
+from mintpilot.recording.in_memory import HistoryRecorder
+from mintpilot.recording.record import MissionRecord, read_record
+from mintpilot.recording.run_summary import RunSummary, summary
+
+from .conftest import flight, way
+
+KEYS = {"outcome", "questions", "gaps", "flight", "timings_s", "seed", "run_dir", "schema_version"}
+
+
+def record_of(events) -> MissionRecord:
+    recorder = HistoryRecorder()
+    for event in events:
+        recorder.record(event)
+    return recorder.close()
+
+
+def test_the_summary_has_the_promised_form(make_events):
+    short = json.loads(summary(record_of(make_events())).model_dump_json())
+    assert set(short) == KEYS
+    assert short["outcome"] == "success"
+    assert short["schema_version"] == 1
+    assert short["seed"] == 7
+    question = short["questions"][0]
+    assert question == {
+        "text": "Can I fly through the grey smoke near the gate?", "gap": "obstacle:smoke-1", "gain_bits": 1.0,
+        "reply": "no", "latency_s": 4.2,
+    }  # fmt: skip
+    assert [gap["asked"] for gap in short["gaps"]] == [True, False]
+    assert all(gap["why"] for gap in short["gaps"])
+    assert short["timings_s"] == pytest.approx({"survey": 2.5, "mapping": 0.25, "deliberation": 0.15, "flight": 1.1})
+    assert RunSummary.model_validate(short).model_dump_json() == json.dumps(short, separators=(",", ":"))
+
+
+def test_flight_figures_leave_the_survey_out(make_events):
+    record = record_of(make_events())
+    plan_m = way([(10, 2), (18, 4), (18, 9), (10.5, 10.6)]).length_m
+    assert record.flight.planned_m == pytest.approx(plan_m)
+    assert record.flight.flown_m == pytest.approx(plan_m)
+    assert record.flight.rms_error_m == pytest.approx(0.03)
+    assert record.flight.max_error_m == pytest.approx(0.03)
+    assert record.survey is not None
+    assert record.survey.flown_m == pytest.approx(22.0)
+
+
+def test_a_leg_that_was_broken_off_counts_as_far_as_it_was_commanded():
+    plan = way([(0, 0), (10, 0)])
+    whole, half = flight(plan), flight(plan, share=0.5, start_s=50.0)
+    legs = [ev.LegFlown(phase="mission", stop_id="a", trajectory=t, log=log) for t, log in (whole, half)]
+    figures = flight_record(legs)
+    assert figures.planned_m == pytest.approx(10 + 9 / 19 * 10)
+    assert figures.seconds == pytest.approx(50 + 9 / 19 * 10), "on one clock the wait in between counts"
+    assert flight_record(list(reversed(legs))).seconds == pytest.approx(10 + 9 / 19 * 10), "on two clocks it cannot"
+    assert flight_record([]).flown_m is None
+
+
+def test_what_is_not_finite_becomes_null(make_events):
+    record = record_of(make_events(reply=Reply.TIMEOUT, words=""))
+    text = record.model_dump_json()
+    assert "Infinity" not in text
+    assert "NaN" not in text
+    assert record.certificate is not None
+    assert record.certificate.bound_s is None
+    assert record.settings["limits"]["endurance_s"] is None
+    assert record.gaps[1].cost_if_unfavourable_s is None
+    assert MissionRecord.model_validate_json(text) == record
+
+
+def test_gaps_without_an_account_say_so(make_events):
+    story = [e for e in make_events(ended=False) if not isinstance(e, ev.PlanChosen)]
+    record = record_of(story)
+    assert [gap.id for gap in record.gaps] == ["obstacle:smoke-1", "target:1"]
+    assert record.gaps[0].asked
+    assert record.gaps[1].relevant is None
+    assert "ended before" in record.gaps[1].why
+
+
+def test_an_account_of_asking_outlives_later_rounds(make_events):
+    story = list(make_events())
+    chosen = next(e for e in story if isinstance(e, ev.PlanChosen))
+    later = tuple(dataclasses.replace(a, asked=False, why="Settled.") for a in chosen.accounts)
+    record = record_of([*story, dataclasses.replace(chosen, accounts=later)])
+    assert record.gaps[0].asked
+    assert "14.9 s more" in record.gaps[0].why
+    assert record.gaps[1].why == "Settled."
+
+
+def test_nothing_told_is_a_record_too():
+    record = build_record(History())
+    assert record.outcome.value == "aborted"
+    assert record.tree is None
+    assert {"python", "mintpilot", "numpy"} <= set(record.versions)
+
+
+def test_things_seen_are_placed(make_events):
+    seen = {s.id: s for s in record_of(make_events()).seen}
+    assert seen["smoke-1"].state == "no"
+    assert seen["smoke-1"].position_m == pytest.approx((9.875, 7.125, 1.5), abs=0.3)
+    assert seen["box-1"].description == "colour red, size small"
+    assert seen["room-1"].view == (3, 20, 20, 60, 100)
+
+
+@pytest.mark.parametrize("version", [0, 2, None, "1"])
+def test_other_versions_are_refused_with_a_next_step(tmp_path, version):
+    (tmp_path / "record.json").write_text(json.dumps({"schema_version": version}))
+    with pytest.raises(RecordError, match=r"schema_version is .*this program reads 1; read it with"):
+        read_record(tmp_path)
+
+
+def test_damaged_records_are_refused(tmp_path, make_events):
+    file = tmp_path / "record.json"
+    with pytest.raises(RecordError, match="cannot read"):
+        read_record(file)
+    for content in ("{", "[]", "\x00"):
+        file.write_text(content)
+        with pytest.raises(RecordError):
+            read_record(file)
+    data = json.loads(record_of(make_events()).model_dump_json())
+    data["flight"]["flown_m"] = "far"
+    file.write_text(json.dumps(data))
+    with pytest.raises(RecordError, match=r"flight\.flown_m: .*restore it"):
+        read_record(file)
+
+
+def test_long_paths_are_thinned_in_the_events_only():
+    plan = way([(x, 0) for x in range(60)])
+    trajectory, log = flight(plan)
+    line = json.loads(
+        event_line(ev.LegFlown(phase="mission", stop_id="a", trajectory=trajectory, log=log), number=0, at_s=0)
+    )
+    rows = line["log"]["position_m"]
+    assert len(log.position_m) > MAX_ROWS == len(rows)
+    assert np.allclose([rows[0], rows[-1]], log.position_m[[0, -1]], atol=1e-3)
