@@ -33,7 +33,7 @@ from mintpilot.strategies.random_query import RandomQueryStrategy
 REGIONS = (2, 4, 6, 8)
 WORLDS = 50
 SETTINGS = AskingSettings(delta_c_s=1.0, alpha=0.0, goal_entropy_bits=0.0)
-GAMES = 1000
+GAMES = {"information-gain": 1000, "ec2": 200}
 WRONG = 0.1
 
 METHODS: dict[str, Callable[[], Strategy]] = {
@@ -127,9 +127,9 @@ def main() -> None:
     rows, refused = measure(4 if options.quick else WORLDS)
     games: list[TwentyQuestions] = []
     if people() is not None:
-        for objective in ("information-gain", "ec2"):
+        for objective, count in GAMES.items():
             games.append(twenty_questions(objective, wrong=0.0))
-            games.append(twenty_questions(objective, wrong=WRONG, games=50 if options.quick else GAMES))
+            games.append(twenty_questions(objective, wrong=WRONG, games=50 if options.quick else count))
     notes = [f"{refused} worlds were too large for the exact optimum and are left out of all rows."] if refused else []
     if not games:
         notes.append("Twenty questions were not played: ../shared/data/twentyq/guess_who.json is not there.")

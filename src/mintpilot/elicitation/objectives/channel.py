@@ -21,7 +21,7 @@ def class_masses(situation: QuerySituation, *, weight: Floats | None = None) -> 
     p = situation.probability if weight is None else weight
     classes = int(situation.class_of.max()) + 1
     if classes * p.size <= SMALL:
-        yes: Floats = situation.yes @ (p[:, None] * (situation.class_of[:, None] == np.arange(classes)))
+        yes: Floats = situation.yes.astype(float) @ (p[:, None] * (situation.class_of[:, None] == np.arange(classes)))
     else:
         yes = np.empty((len(situation.yes), classes))
         for row, cut in zip(yes, situation.yes, strict=True):

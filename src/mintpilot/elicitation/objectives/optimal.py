@@ -11,7 +11,7 @@ from mintpilot.core.errors import LimitError
 from mintpilot.core.geometry import Bools, Floats, Ints
 from mintpilot.core.ports import QueryObjective, QuerySituation
 
-MAX_STATES = 20_000
+MAX_STATES = 8_000
 """Default bound on the posterior supports that are looked at."""
 _ROUNDING = 1e-12
 
