@@ -1,5 +1,6 @@
-import mintpilot
 import pytest
+
+import mintpilot
 from mintpilot.assembly import registry
 from mintpilot.core.errors import UnknownNameError
 

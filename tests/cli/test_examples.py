@@ -60,7 +60,6 @@ def test_the_map_is_the_one_that_the_script_draws(tmp_path):
     assert shades.tolist() == [0, 205, 254]
 
 
-@pytest.mark.xfail(strict=True, reason="the scene made of a given map has nothing to take up")
 def test_the_map_of_ones_own_can_be_flown(tmp_path, capsys):
     out = str(tmp_path / "run")
     main(["run", str(BUILDING), "--operator", "scripted", "--vehicle", "kinematic", "--json", "--out", out])

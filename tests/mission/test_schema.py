@@ -33,7 +33,7 @@ EXAMPLES = [*sorted((ROOT / "examples").glob("*.yaml")), ROOT / "examples" / "my
         (schema_scene.SmokeSpec, scene.Smoke, set()),
         (schema_scene.PersonSpec, scene.Person, set()),
         (schema_scene.ClosedRoomSpec, scene.ClosedRoom, set()),
-        (schema_scene.SceneSpec, scene.Scene, {"name"}),
+        (schema_scene.SceneSpec, scene.Scene, {"name", "landmarks"}),
     ],
 )
 def test_fields_and_defaults_are_those_of_the_nouns(spec, noun, differs):

@@ -6,8 +6,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from mintpilot.assembly.declared import DeclaredTruth, wanted_of
 from mintpilot.core.errors import MissionError
-from mintpilot.core.gap import CorrelationGroup, GapKind, KnowledgeGap
+from mintpilot.core.gap import CorrelationGroup
 from mintpilot.core.mission import Mission
 from mintpilot.core.plan import VehicleLimits
 from mintpilot.core.ports import TruthOracle
@@ -47,24 +48,6 @@ class World:
     """True when the map was given: there is nothing to render or survey."""
     seed: int
     groups: tuple[CorrelationGroup, ...] = ()
-
-
-class DeclaredTruth(TruthOracle):
-    """Knows what a mission file declares under ``truth``."""
-
-    def __init__(self, truths: Mapping[str, str]) -> None:
-        self._truths = dict(truths)
-
-    def value_of(self, gap: KnowledgeGap) -> str | None:
-        """The declared value of the gap's subject; for one of several areas of a mask, that of the mask."""
-        for name in (gap.id, gap.subject, gap.subject.rpartition("-")[0]):
-            value = self._truths.get(name)
-            if value in gap.values:
-                return value
-        if gap.kind is GapKind.TARGET:
-            meant = [v for v in self._truths.values() if v in gap.values]
-            return meant[0] if len(meant) == 1 else None
-        return None
 
 
 def build_world(file: MissionFile, *, base: Path, seed: int | None) -> World:
@@ -135,11 +118,21 @@ def _from_map(file: MissionFile, world: MapWorld, base: Path, seed: int) -> Worl
     start = place_of(world.start_m, world.height_m)
     truths = truths_of(file)
     mission = mission_of(file, start_m=start, volume=map_.frame.box)
-    scene = scene_of_map(map_, name=file.name, start_m=start, truths=truths)
+    task = task_of(file, layer_m=world.height_m) or parse_instruction(mission.instruction)
+    wanted = wanted_of(map_, task, truths, start)
+    scene = scene_of_map(
+        map_,
+        name=file.name,
+        start_m=start,
+        truths=truths,
+        goal_objects=wanted.objects,
+        places_m=wanted.places,
+        must_be_found=wanted.people,
+    )
     rules = FlightRules(radius_m=min(0.27, mission.limits.radius_m), endurance_s=mission.limits.endurance_s)
     return World(
         mission=replace(mission, limits=_with_reserve(mission.limits)),
-        task=task_of(file, layer_m=world.height_m) or parse_instruction(mission.instruction),
+        task=task,
         scene=scene,
         rules=rules,
         truth=DeclaredTruth(truths),

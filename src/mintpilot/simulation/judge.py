@@ -11,7 +11,7 @@ from mintpilot.core.mission import Outcome, Verdict
 from mintpilot.core.plan import Stop
 from mintpilot.core.ports import Judge
 from mintpilot.core.task import Action
-from mintpilot.simulation.scene import FlightRules, Person, Scene, Solid
+from mintpilot.simulation.scene import FlightRules, Landmark, Person, Scene, Solid
 
 BODY_M = 1.7
 """Length of a person lying down."""
@@ -89,12 +89,16 @@ class SceneJudge(Judge):
         for person in self._scene.persons:
             if _distance_to_person(position_m, person) <= self._rules.person_reach_m:
                 self._found.add(person.id)
+        for mark in self._scene.landmarks:
+            if box_distance(mark.extent_m, position_m) <= self._rules.person_reach_m:
+                self._found.add(mark.id)
 
     def acted(self, stop: Stop, position_m: Vec3) -> None:
         """The drone did what the stop is for, from this position, and stayed its time.
 
         What it reaches for is the object nearest to the stop's site; of a stop with several sites, to the one nearest
-        to the drone. Only solids of the kinds among the goal objects count as objects.
+        to the drone. Only solids and landmarks of the kinds among the goal objects count as objects; all do while one
+        of the goals is not declared.
         """
         self.hovered(position_m)
         if stop.action is Action.LOOK:
@@ -109,7 +113,7 @@ class SceneJudge(Judge):
             return
         if stop.action is Action.DELIVER:
             self._carried = ""
-        if target is None or not self._goals_left or target.id != self._goals_left[0]:
+        if target is None or not self._goals_left or self._goals_left[0] not in ("", target.id):
             return
         if box_distance(target.extent_m, position_m) <= self._rules.pick_reach_m:
             self._goals_left.pop(0)
@@ -122,37 +126,43 @@ class SceneJudge(Judge):
         """The verdict at the end: the first failure, else somebody missed, else something not reached, else success."""
         if self._failure is not None:
             return self._failure
-        missed = [p.id for p in self._wanted_people() if p.id not in self._found]
+        missed = [name for name in self._wanted_people() if name not in self._found]
         if missed:
             return Verdict(outcome=Outcome.PERSON_MISSED, reason=f"nobody found {_listed(missed)}, who needs help")
         if self._goals_left:
-            return Verdict(outcome=Outcome.NOT_REACHED, reason=f"it never got to {_listed(self._goals_left)}")
+            left = [name or "what the instruction means" for name in self._goals_left]
+            return Verdict(outcome=Outcome.NOT_REACHED, reason=f"it never got to {_listed(left)}")
         return Verdict(outcome=Outcome.SUCCESS, reason="everything was reached, nothing was touched")
 
-    def _picked(self, target: Solid | None, position_m: Vec3) -> None:
-        wanted = self._goals_left[0] if self._goals_left else ""
-        if target is None or target.id != wanted:
+    def _picked(self, target: Solid | Landmark | None, position_m: Vec3) -> None:
+        wanted = self._goals_left[0] if self._goals_left else None
+        if target is None or wanted not in ("", target.id):
             taken = f"'{target.id}'" if target is not None else "nothing that can be taken"
             meant = f"'{wanted}' was meant" if wanted else "nothing more was to be taken"
             self.fail(Verdict(outcome=Outcome.WRONG_TARGET, reason=f"it reached for {taken}, but {meant}"))
             return
         gap = box_distance(target.extent_m, position_m)
         if gap > self._rules.pick_reach_m:
-            reason = f"it reached for '{wanted}' from {gap:.2f} m away, farther than {self._rules.pick_reach_m:g} m"
+            reason = f"it reached for '{target.id}' from {gap:.2f} m away, farther than {self._rules.pick_reach_m:g} m"
             self.fail(Verdict(outcome=Outcome.WRONG_TARGET, reason=reason))
             return
         self._carried = self._goals_left.pop(0)
 
-    def _target(self, stop: Stop, position_m: Vec3) -> Solid | None:
-        kinds = {s.kind for s in self._scene.solids if s.id in self._scene.goal_objects}
-        objects = [s for s in self._scene.solids if s.kind in kinds]
+    def _target(self, stop: Stop, position_m: Vec3) -> Solid | Landmark | None:
+        things: list[Solid | Landmark] = [*self._scene.solids, *self._scene.landmarks]
+        goals = self._scene.goal_objects
+        kinds = {t.kind for t in things if t.id in goals}
+        objects = [t for t in things if t.kind in kinds or "" in goals]
         places = [site.position_m for site in stop.sites] or [position_m]
         place = min(places, key=lambda p: math.dist(p, position_m))
-        return min(objects, key=lambda s: (box_distance(s.extent_m, place), s.id), default=None)
+        wanted = self._goals_left[0] if self._goals_left else ""
+        # A bare place may lie in a thing: then the one that is wanted counts.
+        return min(objects, key=lambda t: (box_distance(t.extent_m, place), t.id != wanted, t.id), default=None)
 
-    def _wanted_people(self) -> list[Person]:
+    def _wanted_people(self) -> list[str]:
         inside = [room.occupant for room in self._scene.rooms if room.occupant is not None]
-        return [p for p in (*self._scene.persons, *inside) if p.must_be_found]
+        people: list[Person | Landmark] = [*self._scene.persons, *inside, *self._scene.landmarks]
+        return [p.id for p in people if p.must_be_found]
 
     @staticmethod
     def _note(found: list[tuple[int, Verdict]], flags: np.ndarray, outcome: Outcome, reason: str) -> None:

@@ -2,28 +2,41 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 
 import numpy as np
 
 from mintpilot.core.gap import BLOCKED, PRESENT
 from mintpilot.core.geometry import Bools, Box, GridFrame, Vec3
 from mintpilot.core.semantic_map import Cell, Knowledge, SemanticMap
-from mintpilot.simulation.scene import ClosedRoom, Person, Scene, Smoke, Solid
+from mintpilot.simulation.scene import ClosedRoom, Landmark, Person, Scene, Smoke, Solid
 
 
-def scene_of_map(map: SemanticMap, *, name: str, start_m: Vec3, truths: Mapping[str, str]) -> Scene:
+def scene_of_map(
+    map: SemanticMap,
+    *,
+    name: str,
+    start_m: Vec3,
+    truths: Mapping[str, str],
+    goal_objects: tuple[str, ...] = (),
+    places_m: Mapping[str, Vec3] | None = None,
+    must_be_found: Collection[str] = (),
+) -> Scene:
     """What the map says is there: walls of its occupied cells, and regions with their declared truth.
 
     A region counts as toxic when it is known or declared to be blocked; one of unknown truth counts as harmless, since
-    nothing is known that could happen there. A region that is no box is split into boxes. Objects are not solid: a
-    target on a map is a place.
+    nothing is known that could happen there. A region that is no box is split into boxes. Objects are landmarks: a
+    thing on a map is a place to get to, and cells alone say where matter is.
 
     Args:
         map: the map, with its regions and rooms.
         name: of the scene.
         start_m: where the drone takes off, metres.
         truths: id of a region or room → its true value.
+        goal_objects: ids of the objects and places that the instruction really means, in order; empty ones are not
+            known.
+        places_m: id → those of them that are bare places.
+        must_be_found: ids of objects that are people whom the mission has to find.
     """
     frame = map.frame
     walls = tuple(
@@ -51,7 +64,23 @@ def scene_of_map(map: SemanticMap, *, name: str, start_m: Vec3, truths: Mapping[
             )
         )
     return Scene(
-        name=name, volume=_tall(frame.box, frame), start_m=start_m, solids=walls, smokes=tuple(smokes), rooms=tuple(rooms)
+        name=name,
+        volume=_tall(frame.box, frame),
+        start_m=start_m,
+        solids=walls,
+        smokes=tuple(smokes),
+        rooms=tuple(rooms),
+        landmarks=(
+            *(
+                Landmark(id=o.id, kind=o.label, extent_m=_tall(o.box_m, frame), must_be_found=o.id in must_be_found)
+                for o in map.objects
+            ),
+            *(
+                Landmark(id=name, kind="place", extent_m=_tall(Box(lo_m=place, hi_m=place), frame))
+                for name, place in (places_m or {}).items()
+            ),
+        ),
+        goal_objects=goal_objects,
     )
 
 

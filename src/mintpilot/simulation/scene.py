@@ -86,6 +86,19 @@ class ClosedRoom:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Landmark:
+    """Something that a map made by others names: a place to get to, no matter to bump into."""
+
+    id: str
+    """Unique in the scene, e.g. ``box-red``."""
+    kind: str
+    """``box``, ``person`` …"""
+    extent_m: Box
+    must_be_found: bool = False
+    """For a person: whether the mission fails without hovering near."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Scene:
     """A world and the truth about it."""
 
@@ -99,8 +112,11 @@ class Scene:
     rooms: tuple[ClosedRoom, ...] = ()
     persons: tuple[Person, ...] = ()
     """In the open; those in rooms are the rooms' occupants."""
+    landmarks: tuple[Landmark, ...] = ()
+    """Only in scenes made of a given map, which tells where things are but not what they look like."""
     goal_objects: tuple[str, ...] = ()
-    """Ids of solids that the instruction really means, in order: picking another one fails the mission."""
+    """Ids of solids or landmarks that the instruction really means, in order: picking another one fails the mission.
+    An empty id stands for one that nobody declared: whatever is reached then counts."""
     seed: int = 0
     """For looks that are drawn at random (goods on shelves, flames)."""
 
