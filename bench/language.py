@@ -267,7 +267,10 @@ def measure(name: str, model: LanguageModel, introplan: int) -> Section:
     if name != "template":
         ways.append((f"rules + {name}", counting))
     cases = test_module("instructions")
-    instructions = {"tests": {**cases.PLAIN, **cases.PARAPHRASES}, "held out": held_out.HELD_OUT_INSTRUCTIONS}
+    instructions = {
+        "tests": {**cases.PLAIN, **cases.PARAPHRASES, **cases.MORE},
+        "held out": held_out.HELD_OUT_INSTRUCTIONS,
+    }
     parsed, answered, speed = [], [], []
     for way, used in ways:
         for kind, texts in instructions.items():
@@ -294,7 +297,7 @@ def measure(name: str, model: LanguageModel, introplan: int) -> Section:
         tables.append(_measure_introplan(ways, introplan))
     tables.append(Table(caption="The model's time", header=("for", "calls", "p50", "p95", "tokens"), rows=speed))
     return Section(
-        name=f"language-{name}",
+        name=f"50-language-{name}",
         title=f"Language: the rules alone, and with '{name}'",
         command=f"python -m bench.language --llm {name} --introplan {introplan}",
         how="Cases from tests/language (the rules were written for them) and from bench/language_cases.py (held out). "

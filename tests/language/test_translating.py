@@ -11,8 +11,9 @@ from mintpilot.core.errors import UnknownNameError
 from mintpilot.core.gap import KnowledgeGap
 from mintpilot.core.query import Combine, Literal, Query, Question, Saying, SayingKind
 from mintpilot.core.tree import Mint
+from mintpilot.language.doubles import FunctionModel, NoModel
 from mintpilot.language.tongues import GERMAN, TONGUES
-from mintpilot.language.translating import consequence, noun_phrase, translated
+from mintpilot.language.translating import consequence, noun_phrase, translated, wording_for
 
 from . import questions
 
@@ -79,6 +80,17 @@ def test_english_is_the_template_and_other_languages_are_refused() -> None:
     assert _in("en", questions.SMOKE) == questions.SMOKE
     with pytest.raises(UnknownNameError, match="Known: de, en, es, fr"):
         _in("xx", questions.SMOKE)
+
+
+def test_a_model_is_only_asked_for_english() -> None:
+    model = FunctionModel(lambda _: "Is it safe to fly through the grey smoke near the gate?", name="poet")
+    told: list[str] = []
+    for language, worded_by in (("en", "poet"), ("de", "template-de")):
+        wording = wording_for(_template_of(questions.SMOKE), language=language, model=model, notice=told.append)
+        assert wording(questions.SMOKE.query, questions.SMOKE.gaps, None).worded_by == worded_by
+    plain = wording_for(_template_of(questions.SMOKE), model=NoModel(), notice=told.append)
+    assert plain(questions.SMOKE.query, questions.SMOKE.gaps, None) == questions.SMOKE
+    assert told == []
 
 
 def test_unknown_words_stay_english_between_quotation_marks() -> None:

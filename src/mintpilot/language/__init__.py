@@ -2,5 +2,21 @@
 
 from mintpilot.language.answers import Reading, Understood, understand_answer
 from mintpilot.language.instruction import Capabilities, parse_instruction
+from mintpilot.language.proposing import Proposals, propose_cuts
+from mintpilot.language.reading import parse_with_model, understand_with_model
+from mintpilot.language.translating import wording_for
+from mintpilot.language.wording import ModelWording
 
-__all__ = ["Capabilities", "Reading", "Understood", "parse_instruction", "understand_answer"]
+__all__ = [
+    "Capabilities",
+    "ModelWording",
+    "Proposals",
+    "Reading",
+    "Understood",
+    "parse_instruction",
+    "parse_with_model",
+    "propose_cuts",
+    "understand_answer",
+    "understand_with_model",
+    "wording_for",
+]

@@ -44,6 +44,7 @@ class EmbeddedModel(LanguageModel):
         if find_spec("xllamacpp") is None:
             raise MissingPartError("the embedded language model needs 'xllamacpp': pip install 'mintpilot[llm]'")
         self._path = find_model(path, environment)
+        self._lock = threading.Lock()
         self._start()
 
     @property
@@ -54,6 +55,14 @@ class EmbeddedModel(LanguageModel):
     def complete(self, prompt: str, *, schema: type | None, timeout_s: float) -> Completion:
         """One completion; see `LanguageModel.complete`."""
         started_s = time.monotonic()
+        if not self._lock.acquire(timeout=max(0.0, timeout_s)):
+            raise DeviceError(f"embedded model '{self.name}' is busy: going on without it")
+        try:
+            return self._complete(prompt, schema, started_s, timeout_s)
+        finally:
+            self._lock.release()
+
+    def _complete(self, prompt: str, schema: type | None, started_s: float, timeout_s: float) -> Completion:
         form = schema.model_json_schema() if schema is not None and issubclass(schema, BaseModel) else None
         if self._process.poll() is not None:
             self._start()

@@ -6,15 +6,17 @@ What the tables do not know (an odd description, a relation) stays as it was in 
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from mintpilot.core.errors import UnknownNameError
 from mintpilot.core.gap import PASSABLE, PRESENT, GapKind, KnowledgeGap
+from mintpilot.core.ports import LanguageModel
 from mintpilot.core.query import Combine, Literal, Query, Question, SayingKind
 from mintpilot.core.tree import Mint
+from mintpilot.language.doubles import NoModel
 from mintpilot.language.tongues import ATTRIBUTE, TONGUES, VALUE, Tongue
-from mintpilot.language.wording import Wording
+from mintpilot.language.wording import ModelWording, Wording
 
 ENGLISH = "en"
 _NEAR = re.compile(r" (?:near|next to|beside|by|close to|with) (?=the )")
@@ -35,6 +37,32 @@ def translated(template: Wording, language: str) -> Wording:
     if language not in TONGUES:
         raise UnknownNameError("language", language, (ENGLISH, *TONGUES))
     return TranslatedWording(template=template, tongue=TONGUES[language])
+
+
+def wording_for(
+    template: Wording,
+    *,
+    language: str = ENGLISH,
+    model: LanguageModel | None = None,
+    notice: Callable[[str], None] = lambda _: None,
+) -> Wording:
+    """How questions are worded: by template in the operator's language, in English improved by a model if there is one.
+
+    Args:
+        template: words a cut in English.
+        language: ``en``, ``de``, ``fr`` or ``es``; other languages than English always speak by template, since only
+            English wordings can be checked.
+        model: who may propose better words; None or `NoModel`: nobody.
+        notice: told once when the model fails.
+
+    Raises:
+        UnknownNameError: another language.
+    """
+    if model is None or isinstance(model, NoModel) or language != ENGLISH:
+        return translated(template, language)
+    wording = ModelWording(template=template, model=model, notice=notice)
+    wording.warm()
+    return wording
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

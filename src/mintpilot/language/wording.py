@@ -6,7 +6,9 @@ doubt, and when the model is slow or gone, the template's words are asked.
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from typing import Protocol
 
@@ -19,6 +21,7 @@ from mintpilot.language.checking import doubt
 
 WORDING_S = 1.2
 """A question must be out within 1.5 s of the cut: so long is better wording waited for."""
+_WARMING_S = 60.0
 
 _PROMPT = """\
 You rewrite a drone's yes/no question so that it sounds natural when spoken. Keep the meaning and every \
@@ -75,6 +78,19 @@ class ModelWording:
         if attempt > 1:
             return question
         return self.improve(question)
+
+    def warm(self) -> None:
+        """Lets the model read the fixed part of its prompt before it matters, in the background.
+
+        A small model on a busy processor needs seconds for that, once; call it when the mission starts.
+        """
+        prompt = _PROMPT.format(question="Is it the red bag?")
+
+        def read() -> None:
+            with suppress(Exception):  # what is wrong with the model shows when it is needed
+                self.model.complete(prompt, schema=None, timeout_s=_WARMING_S)
+
+        threading.Thread(target=read, daemon=True, name="mintpilot warming").start()
 
     def improve(self, question: Question) -> Question:
         """The question in the model's words, if nothing speaks against them; else as it was."""
