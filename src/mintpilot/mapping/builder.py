@@ -49,6 +49,7 @@ class MapBuilder:
         self._settings = settings or MappingSettings()
         self._log_odds: NDArray[np.float32] = np.zeros(frame.shape, np.float32)
         self._stamp: NDArray[np.int32] = np.zeros(frame.shape, np.int32)
+        self._solid: NDArray[np.int32] = np.zeros(frame.shape, np.int32)
         self._flown = np.zeros(frame.shape, bool)
         self._inside = cells_in(frame, volume)
         self._tick = 0
@@ -82,11 +83,13 @@ class MapBuilder:
             self._frame.resolution_m,
             self._log_odds,
             self._stamp,
+            self._solid,
             self._tick,
             smoke,
-            (settings.min_range_m, settings.max_range_m),
-            (settings.hit, settings.miss, settings.clamp),
+            (settings.min_range_m, settings.near_m, settings.max_range_m),
+            (settings.hit, settings.far_hit, settings.miss, settings.clamp),
         )
+        self._clouds.contradict(self._stamp >= 2 * self._tick)
 
     def mark_flown(self, points_m: ArrayLike, radius_m: float) -> None:
         """Takes the space around places (n, 3), metres, where the vehicle truly was as free, whatever depth says.
@@ -134,7 +137,9 @@ class MapBuilder:
             if thing.label == "fire":  # flames return hardly any depth, yet nobody flies through them
                 cells[cells_in(self._frame, thing.box_m)] = Cell.OCCUPIED
         cells[self._flown & self._inside] = Cell.FREE
-        regions = fused_regions(self._clouds.clouds(self._volume, self._settings), draft, self._priors[0])
+        clouds = self._clouds.clouds(self._volume, self._settings)
+        cells[self._clouds.front_of(clouds, self._solid) & (cells == Cell.OCCUPIED)] = Cell.UNKNOWN
+        regions = fused_regions(clouds, draft, self._priors[0])
         flat = cells.reshape(-1)
         for region in regions:
             # Inside a cloud unknown voxels count as free: the region may be entered only after an explicit yes for

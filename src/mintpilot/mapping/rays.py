@@ -11,9 +11,9 @@ Grid32 = NDArray[np.float32]
 
 @njit(cache=True, nogil=True)
 def cast_rays(  # type: ignore[no-untyped-def] # numba infers the types
-    depth, stride, lens, pose, origin, resolution, log_odds, stamp, tick, smoke, limits, weights
+    depth, stride, lens, pose, origin, resolution, log_odds, stamp, solid, tick, smoke, limits, weights
 ):
-    """Updates ``log_odds`` and ``stamp`` in place from one depth picture.
+    """Updates ``log_odds``, ``stamp`` and ``solid`` in place from one depth picture.
 
     Every voxel changes at most once a frame, and a hit beats any number of misses: thin things such as rack posts
     would otherwise be worn away by the rays that pass beside them inside the same voxel. Voxels flagged in ``smoke``
@@ -28,14 +28,15 @@ def cast_rays(  # type: ignore[no-untyped-def] # numba infers the types
         resolution: edge of a voxel, metres.
         log_odds: (nz, ny, nx) float32.
         stamp: (nz, ny, nx) int32, frame in which a voxel was changed last: ``2 tick`` missed, ``2 tick + 1`` hit.
+        solid: (nz, ny, nx) int32, number of frames in which a ray from near ended in a voxel.
         tick: number of this frame, ascending from 1.
         smoke: (nz, ny, nx) uint8, 1 where this frame shows smoke.
-        limits: (min range, max range) metres.
-        weights: (hit, miss, clamp) log-odds.
+        limits: (min range, range up to which a return is surely told from smoke, max range) metres.
+        weights: (hit from near, hit from further away, miss, clamp) log-odds.
     """
     fx, fy, cx, cy = lens
-    nearest, furthest = limits
-    hit, miss, clamp = weights
+    nearest, near, furthest = limits
+    hit, far_hit, miss, clamp = weights
     height, width = depth.shape
     nz, ny, nx = log_odds.shape
     half = stride // 2
@@ -56,7 +57,9 @@ def cast_rays(  # type: ignore[no-untyped-def] # numba infers the types
                 continue
             if stamp[k, j, i] != 2 * tick + 1:
                 stamp[k, j, i] = 2 * tick + 1
-                log_odds[k, j, i] = min(clamp, log_odds[k, j, i] + hit)
+                log_odds[k, j, i] = min(clamp, log_odds[k, j, i] + (hit if d <= near else far_hit))
+                if d <= near:
+                    solid[k, j, i] += 1
     for v in range(half, height, stride):
         for u in range(half, width, stride):
             d = depth[v, u]

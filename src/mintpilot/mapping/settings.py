@@ -19,6 +19,10 @@ class MappingSettings:
     """Depth above this is too coarse to place a surface: the ray only clears space, up to here."""
     hit: float = 0.9
     """Log-odds added to a voxel in which a ray ended (at most once a frame)."""
+    far_hit: float = 0.3
+    """The same for a ray longer than ``near_m``."""
+    near_m: float = 5.0
+    """From further away a cloud may look like something solid: the sensor's noise hides how soft it is."""
     miss: float = 0.4
     """Log-odds taken from a voxel that was looked through (at most once a frame)."""
     clamp: float = 4.0
@@ -29,12 +33,16 @@ class MappingSettings:
     """Log-odds below which a voxel is free; between the two it is unknown."""
     sure_score: float = 0.9
     """An object seen once only is kept from this score on."""
-    smoke_margin_m: float = 0.3
+    smoke_share: float = 0.4
+    """A voxel belongs to a cloud's front when at least this share of the frames that tell of it show smoke there."""
+    smoke_margin_m: float = 0.5
     """A cloud is this much larger than its visible front: its thin edge is seen through."""
     smoke_gap_m: float = 0.8
     """Smoke points further apart than this belong to different clouds."""
-    min_smoke_m: float = 0.6
-    """A cloud with no horizontal edge this long is noise."""
+    least_smoke_m3: float = 0.4
+    """A cloud of which less than this volume was seen is noise."""
+    least_smoke_height_m: float = 1.0
+    """A cloud less high than this is noise."""
     viewpoint_m: float = 1.2
     """Distance of a room's viewpoint from its door."""
     viewpoint_height_m: float = 1.3

@@ -29,6 +29,8 @@ class Clouds:
         self._frame = frame
         self.seen: NDArray[np.int32] = np.zeros(frame.shape, np.int32)
         """(nz, ny, nx) number of frames that showed smoke in a voxel."""
+        self.against: NDArray[np.int32] = np.zeros(frame.shape, np.int32)
+        """(nz, ny, nx) number of frames that looked through a voxel, or saw something solid in it."""
         self._views: list[tuple[Floats, tuple[int, int, int, int, int], float]] = []
 
     def add(self, detections: tuple[Detection, ...]) -> NDArray[np.uint8]:
@@ -49,6 +51,25 @@ class Clouds:
         self.seen += mask
         return np.asarray(ndimage.maximum_filter(mask, size=3), np.uint8)
 
+    def contradict(self, clear: Bools) -> None:
+        """Counts the voxels (nz, ny, nx) of which one frame says that they hold no smoke."""
+        self.against += clear
+
+    def front_of(self, clouds: list[Cloud], solid: NDArray[np.int32]) -> Bools:
+        """Voxels (nz, ny, nx) in clouds that are no more than a front taken for something solid now and then.
+
+        Args:
+            clouds: where.
+            solid: (nz, ny, nx) number of frames in which a ray from near ended in a voxel. What stands inside a
+                cloud was seen so often from near without smoke around it that it stays.
+        """
+        front = np.zeros(self._frame.shape, bool)
+        for cloud in clouds:
+            front |= cells_in(self._frame, cloud.box_m)
+        near_smoke = ndimage.maximum_filter(self.seen, size=3)
+        front &= (solid < 2) | (near_smoke >= 0.4 * solid)
+        return front
+
     def clouds(self, volume: Box, settings: MappingSettings) -> list[Cloud]:
         """The clouds known so far, from west to east.
 
@@ -56,7 +77,7 @@ class Clouds:
         through, drawn to the floor and to the roof where it comes near them. A box, because the inside of a cloud
         is never seen: whatever lies between two fronts belongs to it.
         """
-        mask = self.seen >= 2
+        mask = (self.seen >= 2) & (self.seen >= settings.smoke_share * (self.seen + self.against))
         if not mask.any():
             return []
         reach = 2 * max(1, round(settings.smoke_gap_m / self._frame.resolution_m / 2)) + 1
@@ -69,14 +90,14 @@ class Clouds:
         return sorted(_merged(clouds), key=lambda c: c.box_m.lo_m)
 
     def _extent(self, cells: Ints, volume: Box, settings: MappingSettings) -> Box | None:
-        if len(cells) < 8:
+        if len(cells) * self._frame.resolution_m**3 < settings.least_smoke_m3:
             return None
         centres = self._frame.centres_of(cells)
         half = self._frame.resolution_m / 2
         # The outermost half percent are stray returns.
         lo = np.percentile(centres, 0.5, axis=0) - half
         hi = np.percentile(centres, 99.5, axis=0) + half
-        if max(hi[:2] - lo[:2]) < settings.min_smoke_m:
+        if hi[2] - lo[2] < settings.least_smoke_height_m:
             return None
         lo, hi = lo - settings.smoke_margin_m, hi + settings.smoke_margin_m
         near = 0.8  # nobody can fly in a gap thinner than this, and fronts near floor and roof are seen worst

@@ -7,36 +7,46 @@ from scipy.ndimage import binary_closing, binary_dilation, label
 
 from mintpilot.core.geometry import Bools, Floats
 from mintpilot.core.observation import Attribute, Detection
-from mintpilot.perception.boxes import box_around, pixel_box, touches_border
+from mintpilot.perception.boxes import box_around, pixel_box
 from mintpilot.perception.settings import PerceptionSettings
 from mintpilot.perception.view import View, as_floats
 
 HEIGHT_M = (1.7, 2.3)
+LEAST_SEEN_M = 1.5
+"""A leaf whose top or bottom is outside the picture shows at least this much of its height."""
 WIDTH_M = (0.6, 1.35)
-THICK_M = 0.16
+THICK_M = 0.06
+"""A leaf is flat; bricks are too, goods on shelves are not."""
+PAINTED = 0.45
+"""Least saturation, median: paint and stained wood are well above brick in its mortar."""
+SURE_M = 6.0
+"""Nearer than this a leaf is told for certain."""
 LEAST_PIXELS = 60
-IN_WALL = 0.5
+IN_WALL = 0.8
 """Share of what is right beside a leaf that must be wall."""
+HAZE = 0.1
+"""Seen through smoke everything is brown: patches with more haze than this are not looked at."""
 
 
 def brown_mask(view: View) -> Bools:
     """Pixels of the colour of wood or brown paint."""
     hue, value = view.hue, view.value
-    brown = (hue > 14) & (hue < 42) & (view.saturation > 0.28) & (value > 30) & (value < 190)
+    brown = (hue > 15) & (hue < 42) & (view.saturation > 0.28) & (value > 30) & (value < 190)
     return np.asarray(brown & view.valid, bool)
 
 
-def find_doors(view: View, index: int, settings: PerceptionSettings) -> list[Detection]:
+def find_doors(view: View, hazy: Bools, index: int, settings: PerceptionSettings) -> list[Detection]:
     """One detection per brown patch that has the shape of a leaf; a pane or a handle in it does not matter."""
     near = view.valid & (view.depth_m < settings.reach_m)
     mask = np.asarray(binary_closing(brown_mask(view), iterations=2), bool) & near
     labels, count = label(mask)
+    haze = binary_dilation(hazy, iterations=4)
     sizes = np.bincount(labels.ravel(), minlength=count + 1)
     found = []
     for number in np.flatnonzero(sizes >= LEAST_PIXELS):
-        if number == 0:
+        patch = np.asarray(labels == number, bool)
+        if number == 0 or float(haze[patch].mean()) > HAZE:
             continue
-        patch = labels == number
         door = _as_door(view, patch, index, settings)
         if door is not None:
             found.append(door)
@@ -49,9 +59,9 @@ def _as_door(view: View, patch: Bools, index: int, settings: PerceptionSettings)
     noise = float(np.median(view.sigma_m[patch]))
     low, high = np.percentile(points[:, 2], (2, 98)) - settings.floor_m
     pixels = pixel_box(patch)
-    if touches_border(pixels, patch.shape) or not (low < 0.4 and HEIGHT_M[0] <= high <= HEIGHT_M[1]):
+    if not _door_high(low, high, pixels, patch.shape) or not WIDTH_M[0] <= wide <= WIDTH_M[1]:
         return None
-    if not (WIDTH_M[0] <= wide <= WIDTH_M[1] and thick < THICK_M + 2.5 * noise) or abs(float(normal[2])) > 0.2:
+    if thick > THICK_M + 1.5 * noise or abs(float(normal[2])) > 0.2 or np.median(view.saturation[patch]) < PAINTED:
         return None
     # A patch of goods on a shelf is brown too, but it has gaps, and no wall around it.
     rows = patch.any(axis=1)[pixels[1] : pixels[3]].mean()
@@ -59,13 +69,21 @@ def _as_door(view: View, patch: Bools, index: int, settings: PerceptionSettings)
         return None
     return Detection(
         label="door",
-        score=0.85,
+        score=0.92 if float(np.median(view.depth_m[patch])) < SURE_M else 0.7,
         box_m=box_around(points),
         attributes=(Attribute(name="colour", value="brown"),),
         pixels=pixels,
         points_m=points[:: max(1, len(points) // 400)],
         frame_index=index,
     )
+
+
+def _door_high(low: float, high: float, pixels: tuple[int, int, int, int], shape: tuple[int, ...]) -> bool:
+    """Whether a patch reaches from the floor to a door's height, as far as the picture shows it."""
+    left, top, right, bottom = pixels
+    if left < 2 or right > shape[1] - 2 or high > HEIGHT_M[1] or high - low < LEAST_SEEN_M:
+        return False
+    return (low < 0.4 or bottom > shape[0] - 3) and (high >= HEIGHT_M[0] or top < 3)
 
 
 def _wall_around(view: View, patch: Bools, points: Floats, normal: Floats) -> float:

@@ -42,7 +42,7 @@ class GeometricPerception(Perception):
         hazy = smoke_mask(view, self._settings)
         fires, burning = find_fire(view, index, self._settings)
         found = find_smoke(view, hazy & ~burning, index, self._settings) + fires
-        found += find_doors(view, index, self._settings)
+        found += find_doors(view, hazy, index, self._settings)
         for patch in standing_patches(view, hazy | burning, self._settings):
             thing = name_patch(view, patch, index, self._settings)
             if thing is not None:

@@ -7,34 +7,53 @@ pattern, edges are rough but full of contrast.
 from __future__ import annotations
 
 import numpy as np
-from scipy.ndimage import binary_dilation, binary_opening, label, uniform_filter
+from scipy.ndimage import label, maximum_filter, minimum_filter, uniform_filter
 
 from mintpilot.core.geometry import Bools
 from mintpilot.core.observation import Detection
 from mintpilot.perception.boxes import box_around, pixel_box
 from mintpilot.perception.settings import PerceptionSettings
-from mintpilot.perception.view import View, as_floats, mean_around
+from mintpilot.perception.view import Singles, View, as_floats, mean_around
 
+_LEAST_FLOOR = 800
+"""Fewer pixels of floor do not tell the sensor's noise."""
+_USUAL = 0.6
+"""Median deviation of a return from its neighbours' mean, in standard deviations, as the settings have them."""
 _THIN = 7
 """Every n-th point of a cloud is enough for the map."""
 
 
 def smoke_mask(view: View, settings: PerceptionSettings) -> Bools:
-    """Pixels (h, w) whose return comes from inside a cloud."""
+    """Pixels (h, w) whose return comes from inside a cloud.
+
+    What is clearly smoke is the seed; it grows over what is less clearly so but hangs together with it.
+    """
     depth, valid = view.depth_m, view.valid
-    smooth = mean_around(depth, valid, 3)
-    off = np.minimum(np.abs(depth - smooth) / view.sigma_m, 12.0).astype(np.float32)
-    rough = mean_around(off, valid, 9)
+    off = np.minimum(np.abs(depth - mean_around(depth, valid, 3)) / view.sigma_m, 12.0).astype(np.float32)
+    rough = mean_around(off, valid, 9) / _surface_roughness(view, off, settings)
     grey = view.frame.rgb.astype(np.float32).mean(axis=-1)
     mean = uniform_filter(grey, 7)
     contrast = np.sqrt(np.maximum(uniform_filter(grey * grey, 7) - mean * mean, 0))
-    lost = uniform_filter((~valid).astype(np.float32), 9)
-    # Where many returns get lost too, the roughness of the few that are left is not needed as well.
-    soft = contrast <= settings.flat_contrast
-    hazy = soft & ((rough >= settings.rough) | ((lost > 0.25) & (rough >= 0.8 * settings.rough)))
-    hazy &= view.saturation < 0.75
-    opened = binary_opening(hazy, iterations=2)
-    return np.asarray(binary_dilation(opened, iterations=3) & soft, bool)
+    soft = (contrast <= settings.flat_contrast) & (view.saturation < 0.75)
+    weak = (rough >= settings.perhaps_rough) & (contrast <= 2 * settings.flat_contrast) & (view.saturation < 0.75)
+    # Opening with a square is separable, and so much quicker than many small steps.
+    weak = np.asarray(maximum_filter(minimum_filter(weak, 5), 5), bool)
+    labels, count = label(weak)
+    seeds = np.bincount(labels[weak & soft & (rough >= settings.rough)], minlength=count + 1)
+    seeds[0] = 0
+    grown = (seeds >= settings.least_smoke_pixels / 3)[labels]
+    return np.asarray(maximum_filter(grown, 7) & (contrast <= 2 * settings.flat_contrast), bool)
+
+
+def _surface_roughness(view: View, off: Singles, settings: PerceptionSettings) -> float:
+    """How rough true surfaces are to this sensor, against what the settings expect: measured on the floor.
+
+    A sensor that is noisier than thought would else see smoke everywhere. 1 where too little floor is in view.
+    """
+    floor = view.valid & (np.abs(view.points_m[..., 2] - settings.floor_m) < 0.03 + 1.5 * view.sigma_m)
+    if int(floor.sum()) < _LEAST_FLOOR:
+        return 1.0
+    return max(1.0, float(np.median(off[floor])) / _USUAL)
 
 
 def find_smoke(view: View, mask: Bools, index: int, settings: PerceptionSettings) -> list[Detection]:
