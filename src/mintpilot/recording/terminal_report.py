@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Iterator
 
 from rich.console import Console, Group, RenderableType
@@ -26,7 +27,7 @@ def print_report(record: MissionRecord, console: Console) -> None:
     Without a terminal the console writes plain text; control characters in words from outside are taken out.
     """
     width = min(console.width, WIDTH)
-    for part in (_head(record), _saw(record), _gaps(record), _asked(record), _decided(record), _flown(record)):
+    for part in (_head(record), _saw(record), _gaps(record, width), _asked(record), _decided(record), _flown(record)):
         console.print(part, width=width)
 
 
@@ -47,26 +48,28 @@ def _saw(record: MissionRecord) -> RenderableType:
     return _section("What it saw", [_plain(f"{record.frames} pictures: {things or 'nothing was found'}.")])
 
 
-def _gaps(record: MissionRecord) -> RenderableType:
+def _gaps(record: MissionRecord, width: int) -> RenderableType:
     if not record.gaps:
         return _section("What it did not know", [Text("Nothing that bears on the task was unknown.")])
-    return _section("What it did not know", [line for gap in record.gaps for line in _gap(gap)])
+    return _section("What it did not know", [line for gap in record.gaps for line in _gap(gap, width)])
 
 
-def _gap(gap: GapRecord) -> Iterator[Text]:
+def _gap(gap: GapRecord, width: int) -> Iterator[Text]:
     state = "asked" if gap.asked else "mattered, not asked" if gap.relevant else "irrelevant"
     state = "not decided" if gap.relevant is None and not gap.asked else state
     yield Text.assemble(
         ("• ", "bold"), printable(gap.description), "  ", (f"[{state}]", "cyan" if gap.asked else "dim")
     )
-    yield Text.assemble("  ", printable(gap.why))
+    yield _indented(gap.why, width)
+    if not gap.asked and not gap.relevant:
+        return
     worst = number(gap.cost_if_unfavourable_s, "s") if gap.cost_if_unfavourable_s is not None else "none"
     figures = (
-        f"  best way {number(gap.cost_if_favourable_s, 's')} if as hoped, {worst} if not; "
+        f"best way {number(gap.cost_if_favourable_s, 's')} if as hoped, {worst} if not; "
         f"{number(gap.divergence_m, 'm')} apart; asking gains {number(gap.gain_bits, 'bit', 2)}, "
         f"saves {number(gap.regret_saved_s, 's')}"
     )
-    yield Text(figures, "dim")
+    yield _indented(figures, width, "dim")
 
 
 def _asked(record: MissionRecord) -> RenderableType:
@@ -110,6 +113,10 @@ def _flown(record: MissionRecord) -> RenderableType:
 
 def _section(title: str, lines: list[RenderableType] | list[Text]) -> RenderableType:
     return Group(Text(), Text(title, "bold underline"), *lines)
+
+
+def _indented(text: str, width: int, style: str = "") -> Text:
+    return Text(textwrap.indent(textwrap.fill(printable(text), max(width - 2, 20)), "  "), style)
 
 
 def _plain(text: str, style: str = "") -> Text:
