@@ -143,6 +143,9 @@ def test_plan_prints_one_object(capsys):
     assert sum(plan["probability"] for plan in report["plan_classes"]) == pytest.approx(1)
     assert report["query"]["text"].endswith("?")
     assert 0 < report["expected_questions"] <= 10
+    # Nothing was asked yet: a gap may matter, but no answer has settled anything.
+    assert all(gap["why"].startswith("Matters: the best plan takes") for gap in report["gaps"] if gap["critical"])
+    assert not any("sked" in gap["why"] for gap in report["gaps"])
 
 
 def test_plan_for_people(capsys):
@@ -161,7 +164,9 @@ def test_run_writes_a_folder_and_prints_one_object(tmp_path, capsys):
     assert code == (0 if record["outcome"] == "success" else 1)
     assert record["seed"] == 3
     assert record["run_dir"] == str(out)
-    assert {"questions", "gaps", "flight", "timings_s", "schema_version"} <= set(record)
+    keys = {"outcome", "questions", "gaps", "flight", "timings_s", "seed", "run_dir", "schema_version"}
+    assert set(record) == keys
+    assert {"text", "gap", "gain_bits", "reply", "latency_s"} == set(record["questions"][0])
     assert (out / "record.json").exists()
     assert "Mission 'my-building'" in shown.err
     assert "\x1b[" not in shown.err  # no terminal: plain lines

@@ -33,11 +33,12 @@ class FlightOptions:
 
 
 def fly(path: Path, options: FlightOptions) -> ExitCode:
-    """Flies the mission in that file, tells how it goes, and prints the report or the record."""
+    """Flies the mission in that file, tells how it goes, and prints the report, or as JSON its summary."""
     from mintpilot.assembly.api import run_mission
     from mintpilot.cli.progress import Narrator
     from mintpilot.mission.reader import read_mission
     from mintpilot.recording.run_folder import new_run_path
+    from mintpilot.recording.run_summary import summary
     from mintpilot.recording.terminal_report import print_report
 
     mission = read_mission(path)
@@ -60,7 +61,7 @@ def fly(path: Path, options: FlightOptions) -> ExitCode:
                 errors.print(f"Stopped. What was recorded until then is in {out}.", highlight=False, soft_wrap=True)
             raise
     if options.as_json:
-        print(record.model_dump_json())
+        print(summary(record).model_dump_json())
     else:
         print_report(record, Console())
     return ExitCode.SUCCESS if record.outcome.value == "success" else ExitCode.NOT_A_SUCCESS

@@ -65,7 +65,8 @@ def demo(
         vehicle: Physics and camera, or a fast point mass.
         seed: Draws another world; the same seed gives the same mission. Default: 0.
         out: Run folder; a new one under ./runs by default.
-        json: Print the record as one JSON object, and nothing else, on standard output.
+        json: Print the outcome, questions, gaps and figures as one JSON object, and nothing else, on standard output.
+            The whole record is in the run folder.
         debug: Show the traceback of an error.
     """
     from mintpilot.cli.demos import demo_path
@@ -105,7 +106,8 @@ def run(
         strategy: How it decides what to ask.
         seed: Of everything that is drawn at random; overrides the one in the file.
         out: Run folder; a new one under ./runs by default.
-        json: Print the record as one JSON object, and nothing else, on standard output.
+        json: Print the outcome, questions, gaps and figures as one JSON object, and nothing else, on standard output.
+            The whole record is in the run folder.
         debug: Show the traceback of an error.
     """
     from mintpilot.cli.fly import FlightOptions, fly

@@ -9,12 +9,12 @@ from mintpilot.reasoning.explain import gap_accounts
 from mintpilot.reasoning.tree import build_tree
 
 
-def first_accounts(thought: Thought, *, asked: frozenset[str] = frozenset()) -> tuple[GapAccount, ...]:
+def first_accounts(thought: Thought, *, asked: frozenset[str] | None = None) -> tuple[GapAccount, ...]:
     """The accounts of all gaps of one deliberation, by id.
 
     Args:
         thought: the deliberation, the first one that knew of these gaps.
-        asked: ids of gaps that were asked about, then or later.
+        asked: ids of gaps that were asked about, then or later; None while that is not decided yet.
     """
     seen = thought.situation
     mint = thought.decision.mint or build_tree(seen.space, seen.belief, seen.settings, seen.metric)

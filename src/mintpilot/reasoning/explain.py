@@ -26,7 +26,7 @@ def gap_accounts(
     settings: AskingSettings,
     metric: ImpactMetric,
     *,
-    asked: Collection[str] = (),
+    asked: Collection[str] | None = (),
 ) -> tuple[GapAccount, ...]:
     """The account of every gap of the belief, by id.
 
@@ -39,7 +39,7 @@ def gap_accounts(
         mint: its tree.
         settings: thresholds.
         metric: distance between paths.
-        asked: ids of gaps that were asked about at any time.
+        asked: ids of gaps that were asked about at any time; None while that is not decided yet.
     """
     regret = regret_matrix(mint, settings)
     made = []
@@ -54,9 +54,18 @@ def gap_accounts(
                 gap_id=gap.id,
                 description=gap.description,
                 kind=gap.kind.value,
-                asked=gap.id in asked,
+                asked=asked is not None and gap.id in asked,
                 relevant=node is not None,
-                why=_why(gap, node is not None, gap.id in asked, best, worst, divergence, bits, settings),
+                why=_why(
+                    gap,
+                    node is not None,
+                    None if asked is None else gap.id in asked,
+                    best,
+                    worst,
+                    divergence,
+                    bits,
+                    settings,
+                ),
                 cost_if_favourable_s=best.cost_s if best else None,
                 cost_if_unfavourable_s=worst.cost_s if worst else None,
                 divergence_m=divergence,
@@ -109,7 +118,7 @@ def _worth(mint: Mint, regret_s: Floats, gap_id: str) -> tuple[float, float]:
 def _why(
     gap: KnowledgeGap,
     relevant: bool,
-    asked: bool,
+    asked: bool | None,
     best: Plan | None,
     worst: Plan | None,
     divergence_m: float | None,
@@ -128,11 +137,14 @@ def _why(
         figures += f"; {bits:.2f} bits are not known"
     if asked:
         return f"Asked: {figures}."
+    if relevant and asked is None:
+        return f"Matters: {figures}."
     if relevant:
         return f"Not asked: {figures}, but other answers settled the plan."
+    head = "Does not matter" if asked is None else "Not asked"
     if worst is None or worst.cost_s - best.cost_s <= settings.delta_c_s + TOLERANCE:
         limits = f"{settings.delta_c_s:.1f} s"
         if settings.rule is CriticalityRule.PAPER:
             limits += f" and {settings.delta_d_m:.1f} m"
-        return f"Not asked: {figures}; differences up to {limits} are not worth a question."
-    return f"Not asked: {figures}, but it is as good as known."
+        return f"{head}: {figures}; differences up to {limits} are not worth a question."
+    return f"{head}: {figures}, but it is as good as known."
