@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from mintpilot.core.errors import InfeasibleError, InputError
-from mintpilot.core.geometry import Bools, Floats
+from mintpilot.core.geometry import Floats
 from mintpilot.core.plan import VehicleLimits
 from mintpilot.core.semantic_map import SemanticMap
 from mintpilot.core.trajectory import Trajectory
-from mintpilot.planning.checks import START_SLACK_M, check_path
+from mintpilot.planning.checks import check_path
 from mintpilot.planning.flyable import known_flyable
 from mintpilot.planning.motion import Motion, corner_motion
 from mintpilot.planning.smoothing import Sight, heading
@@ -65,13 +65,15 @@ def plan_trajectory(
     problem = check_path(path, map, limits)
     if problem:
         raise InfeasibleError(f"this path cannot be flown: {problem}. Plan again on the present map")
-    allowed = np.array(known_flyable(map, limits))
-    corners, stops = _corners(path, map, allowed)
+    sight = Sight(known_flyable(map, limits), map.frame)
+    corners, stops = _corners(path, sight)
     yaw_ends = (start_yaw_rad, end_yaw_rad)
     if len(corners) < 2:
         still = np.zeros((1 + int(np.ceil(0.2 / sample_s)), 3))
         return _assembled(corners[-1] + still, still, still, yaw_ends, sample_s)
-    motion = _clear_motion(corners, stops, Sight(allowed, map.frame), speed, limits.max_acceleration_mps2, sample_s)
+    motion = _clear_motion(
+        corners, stops, sight, speed_mps=speed, acceleration_mps2=limits.max_acceleration_mps2, sample_s=sample_s
+    )
     time = _times(motion, sample_s)
     position, velocity, acceleration = motion.sample(time)
     position += corners[0]
@@ -90,45 +92,34 @@ def _checked_path(path_m: Floats) -> Floats:
     return np.asarray(path[np.concatenate([[True], apart])])
 
 
-def _corners(path: Floats, map: SemanticMap, allowed: Bools) -> tuple[Floats, Bools]:
-    """Corners after the shortcut, and at which of the inner ones to stop.
+def _corners(path: Floats, sight: Sight) -> tuple[Floats, int]:
+    """Corners after the shortcut, and how many of the first inner ones must be stopped at.
 
-    A start beside flyable space is left straight, up to the first way-point that is flyable; the cells on that way are
-    added to ``allowed`` (they passed `check_path`), and the vehicle stops where it ends, so that nothing else of them
-    is used.
+    A start beside flyable space is left as it is up to the first way-point that is flyable: `check_path` has passed
+    that straight way, and the vehicle stops where it ends, so that it uses nothing else of what lies there.
     """
-    sight = Sight(allowed, map.frame)
     first = 0
     while first < len(path) - 1 and not sight.clear(path[first], path[first]):
         first += 1
-    if first == 0:
-        corners = sight.shortcut(path)
-        return corners, np.zeros(max(len(corners) - 2, 0), bool)
-    way = (
-        path[0]
-        + (path[first] - path[0]) * np.linspace(0, 1, 1 + int(START_SLACK_M / map.frame.resolution_m * 40))[:, None]
-    )
-    allowed[tuple(map.frame.cells_of(way).T)] = True
-    corners = np.concatenate([path[:1], sight.shortcut(path[first:])])
-    stops = np.zeros(max(len(corners) - 2, 0), bool)
-    stops[:1] = True
-    return corners, stops
+    return np.concatenate([path[:first], sight.shortcut(path[first:])]), first
 
 
 def _clear_motion(
-    corners: Floats, stops: Bools, sight: Sight, speed: float, acceleration: float, sample_s: float
+    corners: Floats, stops: int, sight: Sight, *, speed_mps: float, acceleration_mps2: float, sample_s: float
 ) -> Motion:
     """Lowers the speed at corners whose turn leaves the allowed cells, until none does: a stop never does."""
-    corner_mps = np.where(stops, 0.0, speed)
+    corner_mps = np.full(max(len(corners) - 2, 0), speed_mps)
+    corner_mps[:stops] = 0.0
     fine = sample_s / int(np.ceil(sample_s / _CHECK_S))
     while True:
-        motion = corner_motion(corners, corner_mps, peak_mps=speed, acceleration_mps2=acceleration)
-        bad = _blocked_times(motion, corners[0], sight, fine)
-        if fine < sample_s:
-            bad = np.append(bad, _blocked_times(motion, corners[0], sight, sample_s))
-        live = np.flatnonzero(corner_mps > 0)
+        motion = corner_motion(corners, corner_mps, peak_mps=speed_mps, acceleration_mps2=acceleration_mps2)
+        if len(corners) - 2 < stops:  # nothing but the way into flyable space
+            return motion
+        from_s = float(motion.corner_s[stops - 1]) if stops else 0.0
+        bad = np.concatenate([_blocked_times(motion, corners[0], sight, step, from_s) for step in {fine, sample_s}])
         if not len(bad):
             return motion
+        live = np.flatnonzero(corner_mps > 0)
         if not len(live):  # stopping everywhere is the polyline itself, which is clear: only a defect can lead here
             raise InfeasibleError("no motion along this path stays in known flyable cells. Plan again with more margin")
         guilty = np.unique(live[np.argmin(np.abs(bad[:, None] - motion.corner_s[None, live]), axis=1)])
@@ -140,9 +131,10 @@ def _times(motion: Motion, step_s: float) -> Floats:
     return np.asarray(step_s * np.arange(int(np.ceil(motion.duration_s / step_s - 1e-9)) + 1), float)
 
 
-def _blocked_times(motion: Motion, start: Floats, sight: Sight, step_s: float) -> Floats:
+def _blocked_times(motion: Motion, start: Floats, sight: Sight, step_s: float, from_s: float) -> Floats:
+    """When, from ``from_s`` on, the motion leaves the allowed cells."""
     time = _times(motion, step_s)
-    blocked = sight.blocked_pieces(start + motion.sample(time)[0])
+    blocked = sight.blocked_pieces(start + motion.sample(time)[0]) & (time[:-1] >= from_s)
     return np.asarray(time[:-1][blocked] + step_s / 2)
 
 

@@ -13,7 +13,7 @@ from mintpilot.core.trajectory import Trajectory
 START_TOLERANCE_M = 0.5
 """A trajectory must begin at most this far from the vehicle, metres."""
 BRAKING_MPS2 = 2.0
-"""How fast an interrupted flight loses its speed."""
+"""Hardest braking of an interrupted flight, besides what its own curve takes."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -100,20 +100,20 @@ def sampled(trajectory: Trajectory, time_s: Floats) -> Reference:
 def braked(trajectory: Trajectory, from_s: float, step_s: float) -> Reference:
     """The way along the trajectory from ``from_s`` to a stop, in steps; the first sample is at ``from_s``.
 
-    The trajectory's own clock is slowed down evenly to a halt, so that the drone stays on the curve.
+    The trajectory's own clock is slowed down smoothly (half a cosine) to a halt, so that the drone stays on the curve.
     """
     speed = float(np.linalg.norm(sampled(trajectory, np.array([from_s])).velocity_mps))
-    halt_s = max(speed / BRAKING_MPS2, step_s)
+    halt_s = max(speed * np.pi / 2 / BRAKING_MPS2, step_s)
     elapsed = np.asarray(step_s * np.arange(int(np.ceil(halt_s / step_s)) + 1), float)
-    rate = np.clip(1 - elapsed / halt_s, 0.0, 1.0)
-    slowed = np.minimum(elapsed, halt_s)
-    along = sampled(trajectory, from_s + slowed - slowed**2 / (2 * halt_s))
-    braking = np.where(rate > 0, 1 / halt_s, 0.0)[:, None]
+    phase = np.pi * np.minimum(elapsed / halt_s, 1.0)
+    rate = ((1 + np.cos(phase)) / 2)[:, None]
+    slowing = (np.pi / 2 / halt_s * np.sin(phase))[:, None]
+    along = sampled(trajectory, from_s + halt_s / 2 / np.pi * (phase + np.sin(phase)))
     return Reference(
         time_s=from_s + elapsed,
         position_m=along.position_m,
-        velocity_mps=along.velocity_mps * rate[:, None],
-        acceleration_mps2=along.acceleration_mps2 * rate[:, None] ** 2 - along.velocity_mps * braking,
+        velocity_mps=along.velocity_mps * rate,
+        acceleration_mps2=along.acceleration_mps2 * rate**2 - along.velocity_mps * slowing,
         yaw_rad=along.yaw_rad,
     )
 
