@@ -109,6 +109,8 @@ REFUSED: dict[str, str] = {
     "bring it to the injured person": "not picked up before",
     "go there": "refers to nothing",
     "go to the red": "names no thing",
+    "go to 5": "names no thing",
+    "go to the big old rusty heavy round dented dusty strange red box": "too long",
     "fly to the red box or the blue box": "names a choice",
     "don't pick up the red box": "negations and conditions",
     "go to the box unless it is red": "negations and conditions",

@@ -12,6 +12,8 @@ from mintpilot.language import lexicon, patterns
 
 DEFAULT_HEIGHT_M = 1.5
 """Height of a place that is given by two numbers only, metres."""
+_MOST_WORDS = 8
+"""Noun and what stands before it, without articles."""
 
 
 def parse_phrase(phrase: str, before: Reference | None = None) -> Reference:
@@ -64,7 +66,9 @@ def _describe(words: str, before: Reference | None) -> Reference:
     if len(tokens) > 1 and tokens[-1] in lexicon.ADJECTIVES:  # anyone hurt, somebody injured
         tokens = [*tokens[-1:], *tokens[:-1]]
     tokens = [t for t in tokens if t not in ("else", "other", "further", "more")]
-    if not tokens or tokens[-1] in lexicon.ADJECTIVES:
+    if len(tokens) > _MOST_WORDS:
+        raise InputError(f"'{words[:60]} …' is too long for one thing: describe it in at most {_MOST_WORDS} words")
+    if not tokens or tokens[-1] in lexicon.ADJECTIVES or not tokens[-1][0].isalpha():
         raise InputError(f"'{words}' names no thing: add a noun, as in 'the red box'")
     *adjectives, noun = tokens
     said = tuple(_attribute(word) for word in adjectives)
