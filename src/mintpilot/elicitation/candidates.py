@@ -27,7 +27,7 @@ MAX_CUTS = 1000
 """Bound on the cuts that are looked at, easiest first."""
 MAX_KEPT = 1 << 20
 """Tables of answers with more cells than this are made anew each time."""
-MAX_CELLS = 1 << 24
+MAX_CELLS = 1 << 21
 """Bound on cuts times joint hypotheses."""
 
 
@@ -69,7 +69,7 @@ def candidate_queries(
     """
     support, language = mint.support, _language(mint.belief.gaps, start_m)
     most = max(1, min(MAX_CUTS, MAX_CELLS // max(1, support.size)))
-    looked_at = language.queries[: 4 * most]
+    looked_at = language.queries[: 2 * most]
     rows: Bools = language.truths(mint.belief, len(looked_at))[:, support]
     # A cut and its opposite divide alike; of those that divide alike the first one is the easiest.
     keys = np.packbits(rows ^ rows[:, :1], axis=1)

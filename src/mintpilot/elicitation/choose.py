@@ -48,10 +48,11 @@ def decisions(class_of: Ints, probability: Floats, regret_s: Floats, settings: A
     if settings.rule is CriticalityRule.PAPER or len(regret_s) <= int(class_of.max(initial=0)):
         return class_of
     good = regret_s <= settings.delta_c_s + TOLERANCE
+    weight = good.astype(float)  # Booleans do not multiply fast.
     merged = np.full(len(class_of), -1)
     left = np.asarray(probability, float).copy()
     for number in range(len(regret_s)):
-        best = int(np.argmax(np.round(good @ left, SAME)))
+        best = int(np.argmax(np.round(weight @ left, SAME)))
         taken = good[best] & (merged < 0)
         merged[taken] = number
         left[taken] = 0.0
