@@ -43,6 +43,8 @@ def fused_objects(tracks: Sequence[Track], draft: Draft) -> tuple[MapObject, ...
         for t in tracks
         if t.label != "door" and (len(t.frames) >= 2 or t.score >= settings.sure_score) and not _roofed(t, draft)
     ]
+    people = [t for t in kept if t.label == "person"]
+    kept = [t for t in kept if not any(_limb_of(t, person) for person in people)]
     old = draft.previous.objects if draft.previous is not None else ()
     pairs = match([[closeness(t.box_m, o.box_m) if t.label == o.label else 0.0 for o in old] for t in kept])
     for thing in old:
@@ -140,6 +142,14 @@ def _order(identity: str) -> tuple[str, int]:
 
 def _colour(track: Track) -> str:
     return next((f"{a.value} " for a in track.attributes if a.name == "colour"), "")
+
+
+def _limb_of(track: Track, person: Track) -> bool:
+    """True for a low scrap beside somebody lying: an arm or a leg that was seen apart from the rest."""
+    if track.label == "person" or track.box_m.hi_m[2] > 0.4 or len(track.frames) > len(person.frames):
+        return False
+    a, b = track.box_m.centre_m, person.box_m.centre_m
+    return float(np.hypot(a[0] - b[0], a[1] - b[1])) < 1.1
 
 
 def _roofed(track: Track, draft: Draft) -> bool:

@@ -93,7 +93,7 @@ class Tracks:
         """Fuses one detection with the nearest track of its kind, or starts a new one."""
         best, best_closeness = None, 0.0
         for track in self.all:
-            if track.label == detection.label and (c := closeness(track.box_m, detection.box_m)) > best_closeness:
+            if track.label == detection.label and (c := _alike(track, detection)) > best_closeness:
                 best, best_closeness = track, c
         if best is None:
             best = Track(
@@ -103,6 +103,19 @@ class Tracks:
             )
             self.all.append(best)
         best.add(detection, eye_m)
+
+
+PERSON_M = 1.3
+"""Parts of people nearer than this belong to one person."""
+
+
+def _alike(track: Track, detection: Detection) -> float:
+    """How likely a detection shows the thing of a track, 0 or less for not at all. People are often seen in part."""
+    near = closeness(track.box_m, detection.box_m)
+    if track.label != "person":
+        return near
+    a, b = track.box_m.centre_m, detection.box_m.centre_m
+    return max(near, 1.0 - float(np.hypot(a[0] - b[0], a[1] - b[1])) / PERSON_M)
 
 
 def closeness(a: Box, b: Box) -> float:

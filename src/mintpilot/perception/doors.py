@@ -20,7 +20,7 @@ THICK_M = 0.06
 PAINTED = 0.45
 """Least saturation, median: paint and stained wood are well above brick in its mortar."""
 SURE_M = 6.0
-"""Nearer than this a leaf is told for certain."""
+"""Nearer than this a leaf of a full colour is told for certain."""
 LEAST_PIXELS = 60
 IN_WALL = 0.8
 """Share of what is right beside a leaf that must be wall."""
@@ -67,9 +67,10 @@ def _as_door(view: View, patch: Bools, index: int, settings: PerceptionSettings)
     rows = patch.any(axis=1)[pixels[1] : pixels[3]].mean()
     if rows < 0.97 or _wall_around(view, patch, points, normal) < IN_WALL:
         return None
+    sure = np.median(view.depth_m[patch]) < SURE_M and np.median(view.saturation[patch]) > 0.6
     return Detection(
         label="door",
-        score=0.92 if float(np.median(view.depth_m[patch])) < SURE_M else 0.7,
+        score=0.92 if sure else 0.7,
         box_m=box_around(points),
         attributes=(Attribute(name="colour", value="brown"),),
         pixels=pixels,
