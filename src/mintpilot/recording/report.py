@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,7 +15,7 @@ from pydantic import JsonValue
 from mintpilot.core.mission import Outcome
 from mintpilot.core.query import Reply
 from mintpilot.recording.frames import FrameStore, crop_jpeg
-from mintpilot.recording.record import MissionRecord, SeenRecord
+from mintpilot.recording.record import GapRecord, MissionRecord, SeenRecord
 from mintpilot.recording.tree_drawing import percent
 from mintpilot.recording.tree_svg import tree_svg
 from mintpilot.recording.words import OUTCOME_WORDS, STOP_WORDS
@@ -61,6 +62,7 @@ def report_html(record: MissionRecord, folder: Path) -> str:
     plot = folder / "topdown.svg"
     return environment.get_template("report.html.j2").render(
         record=record,
+        gaps=weightiest_first(record.gaps),
         tone="good" if record.outcome is Outcome.SUCCESS else "stopped" if record.outcome in _STOPPED else "bad",
         headline=OUTCOME_WORDS[record.outcome],
         stop_words=STOP_WORDS[record.certificate.reason] if record.certificate else "",
@@ -78,17 +80,24 @@ _STOPPED = {Outcome.ABORTED, Outcome.NO_SAFE_PLAN}
 
 
 def pictures(record: MissionRecord, folder: Path) -> list[Picture]:
-    """Close-ups of what the drone found, at most `MAX_PICTURES`; those that a gap is about come first."""
+    """Close-ups of what was found, at most `MAX_PICTURES`: first what a gap is about, then what is rare."""
     subjects = {g.subject for g in record.gaps} | {v.value for g in record.gaps for v in g.values}
     store = FrameStore(folder / "frames")
     found: list[Picture] = []
-    for seen in sorted(record.seen, key=lambda s: (s.id not in subjects, s.kind == "object", s.id)):
+    alike = Counter(seen.state for seen in record.seen)
+    order = sorted(record.seen, key=lambda s: (s.id not in subjects, s.kind == "object", alike[s.state], s.id))
+    for seen in order:
         crop = crop_jpeg(store.file(seen.view[0]), seen.view[1:]) if seen.view and len(found) < MAX_PICTURES else None
         if crop is not None:
             caption = _caption(seen)
             uri = _data_uri(crop, "image/jpeg")
             found.append(Picture(data=uri, title=seen.id, caption=caption, gap=seen.id in subjects))
     return found
+
+
+def weightiest_first(gaps: Iterable[GapRecord]) -> list[GapRecord]:
+    """Gaps in the order in which they interest people: asked, then relevant, then the rest."""
+    return sorted(gaps, key=lambda gap: (not gap.asked, not gap.relevant))
 
 
 def number(value: float | None, unit: str = "", digits: int = 1) -> str:

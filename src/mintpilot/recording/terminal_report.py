@@ -12,7 +12,7 @@ from rich.text import Text
 from mintpilot.core.mission import Outcome
 from mintpilot.core.query import Reply
 from mintpilot.recording.record import GapRecord, MissionRecord, QuestionRecord
-from mintpilot.recording.report import REPLY_WORDS, number
+from mintpilot.recording.report import REPLY_WORDS, number, weightiest_first
 from mintpilot.recording.tree_drawing import tree_text
 from mintpilot.recording.words import OUTCOME_WORDS, STOP_WORDS, printable
 
@@ -51,7 +51,9 @@ def _saw(record: MissionRecord) -> RenderableType:
 def _gaps(record: MissionRecord, width: int) -> RenderableType:
     if not record.gaps:
         return _section("What it did not know", [Text("Nothing that bears on the task was unknown.")])
-    return _section("What it did not know", [line for gap in record.gaps for line in _gap(gap, width)])
+    return _section(
+        "What it did not know", [line for gap in weightiest_first(record.gaps) for line in _gap(gap, width)]
+    )
 
 
 def _gap(gap: GapRecord, width: int) -> Iterator[Text]:
