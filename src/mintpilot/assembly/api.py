@@ -9,6 +9,7 @@ from typing import TypeAlias
 
 from mintpilot.assembly.crews import Choices, VehicleChoice, crew_for, scripted_operator, thinking_parts
 from mintpilot.assembly.deliberation import DeliberationReport, deliberation_report
+from mintpilot.assembly.soundness import unsound_parts
 from mintpilot.assembly.worlds import World, build_world
 from mintpilot.core.errors import UnknownNameError
 from mintpilot.core.events import Event
@@ -32,8 +33,11 @@ Progress: TypeAlias = Callable[[Event], object]
 
 
 def check_mission(path: str | Path) -> list[Problem]:
-    """Every mistake in that mission file, with its place and what to write instead; empty when it is sound."""
-    return find_problems(path)
+    """Every mistake in that mission file, with its place and what to write instead; empty when it is sound.
+
+    A file of sound form is built as well, so that names, parameters and the instruction are known to be usable.
+    """
+    return find_problems(path) or unsound_parts(path, read_mission(path))
 
 
 def plan_mission(

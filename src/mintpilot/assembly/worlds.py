@@ -22,7 +22,7 @@ from mintpilot.mission.schema_map import map_of
 from mintpilot.mission.schema_scene import ClosedRoomSpec, PersonSpec, SceneSpec
 from mintpilot.mission.schema_world import MapWorld, ScenarioWorld, SceneWorld
 from mintpilot.simulation.map_scene import scene_of_map
-from mintpilot.simulation.scenarios import make_scenario
+from mintpilot.simulation.scenarios import Scenario, make_scenario
 from mintpilot.simulation.scene import ClosedRoom, FlightRules, Person, Scene, Shape, Smoke, Solid
 from mintpilot.simulation.scene_map import map_of_scene
 from mintpilot.simulation.truth import SceneTruth
@@ -71,7 +71,7 @@ def build_world(file: MissionFile, *, base: Path, seed: int | None) -> World:
 
 
 def _from_scenario(file: MissionFile, world: ScenarioWorld, seed: int) -> World:
-    scenario = make_scenario(world.scenario, seed, **_numbers(world.parameters))
+    scenario = scenario_of(world, seed)
     given = file.model_fields_set
     limits, rules = scenario.mission.limits, scenario.rules
     if "vehicle" in given:
@@ -146,6 +146,16 @@ def _from_map(file: MissionFile, world: MapWorld, base: Path, seed: int) -> Worl
 def _with_reserve(limits: VehicleLimits) -> VehicleLimits:
     """Plans may use the battery less a reserve, for braking, corners and gusts: costs are lengths at cruise speed."""
     return replace(limits, endurance_s=limits.endurance_s * (1 - RESERVE))
+
+
+def scenario_of(world: ScenarioWorld, seed: int) -> Scenario:
+    """The drawn scenario of a mission file.
+
+    Raises:
+        UnknownNameError: the generator has no parameter of a name.
+        MissionError: a parameter's value breaks a rule.
+    """
+    return make_scenario(world.scenario, seed, **_numbers(world.parameters))
 
 
 def _numbers(parameters: Mapping[str, bool | int | float | str]) -> dict[str, float]:

@@ -10,6 +10,7 @@ import json
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TypeAlias
 
 from pydantic import ValidationError
 
@@ -18,6 +19,9 @@ from mintpilot.mission.reader_form import FormWords
 from mintpilot.mission.reader_sense import contradictions
 from mintpilot.mission.reader_yaml import Document, Fault, Path_, read_document
 from mintpilot.mission.schema import MissionFile
+
+Place: TypeAlias = Path_
+"""The way to a key of a mission file, from the top: ``("world", "regions", 0, "box")``."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -72,6 +76,17 @@ def read_mission(path: str | Path) -> MissionFile:
 def find_problems(path: str | Path) -> list[Problem]:
     """Every mistake in that mission file, in the order of its lines; empty when it is sound."""
     return _read(Path(path))[1]
+
+
+def place_problems(path: str | Path, mistakes: Sequence[tuple[Place, str]]) -> list[Problem]:
+    """Mistakes that were found elsewhere, each told at its line of that file; in the order of the lines.
+
+    Args:
+        path: the mission file.
+        mistakes: the key's way from the top, e.g. ``("asking", "objective")``, and the message.
+    """
+    faults = [Fault(path=place, line=None, message=message) for place, message in mistakes]
+    return _placed(faults, read_document(Path(path)), Path(path)) if faults else []
 
 
 def json_schema() -> str:

@@ -1,0 +1,73 @@
+"""What only building a mission's parts can tell: an instruction not understood, wrong parameters, unknown names."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+from mintpilot.assembly.registry import load
+from mintpilot.assembly.worlds import build_world, scenario_of
+from mintpilot.core.errors import MintPilotError
+from mintpilot.language.instruction import parse_instruction
+from mintpilot.mission.reader import Place, Problem, place_problems
+from mintpilot.mission.schema import MissionFile
+from mintpilot.mission.schema_world import ScenarioWorld
+from mintpilot.uncertainty.findings import find_gaps
+
+
+def unsound_parts(path: str | Path, file: MissionFile) -> list[Problem]:
+    """Every mistake that shows when the parts of a mission of sound form are made, in the order of its lines.
+
+    Args:
+        path: of the mission file.
+        file: what was read from it.
+    """
+    return place_problems(path, list(_mistakes(file, Path(path).parent)))
+
+
+def _mistakes(file: MissionFile, base: Path) -> Iterator[tuple[Place, str]]:
+    found = [
+        *_tried(("asking", "objective"), lambda: load("objective", file.asking.objective)),
+        *_tried(("asking", "impact_metric"), lambda: load("metric", file.asking.impact_metric)),
+    ]
+    if file.goals is None:
+        found += _tried(("instruction",), lambda: parse_instruction(file.instruction))
+    if isinstance(file.world, ScenarioWorld):
+        found += _scenario_mistakes(file.world)
+    yield from found
+    if not found:
+        yield from _world_mistakes(file, base)
+
+
+def _scenario_mistakes(world: ScenarioWorld) -> list[tuple[Place, str]]:
+    """Told at the parameter that the message names, where it names one."""
+    found = _tried(("world", "parameters"), lambda: scenario_of(world, world.seed or 0))
+    return [
+        (
+            (*place, *[name for name in world.parameters if f"'{name}'" in message or f"{name} =" in message][:1]),
+            message,
+        )
+        for place, message in found
+    ]
+
+
+def _world_mistakes(file: MissionFile, base: Path) -> Iterator[tuple[Place, str]]:
+    """The world as a whole, and whether a given map has what the mission speaks of."""
+    try:
+        world = build_world(file, base=base, seed=None)
+    except MintPilotError as error:
+        yield ("world",), str(error)
+        return
+    if not world.is_map:
+        return
+    for problem in find_gaps(world.map, world.task, start_m=world.mission.start_m).problems:
+        named = [i for i, goal in enumerate(file.goals or ()) if f"'{goal.phrase or goal.object}'" in problem]
+        yield (("goals", named[0]) if named else ("instruction",)), problem
+
+
+def _tried(place: Place, work: Callable[[], object]) -> list[tuple[Place, str]]:
+    try:
+        work()
+    except MintPilotError as error:
+        return [(place, str(error))]
+    return []
