@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from mintpilot.assembly.registry import load
 from mintpilot.core.errors import InfeasibleError
 from mintpilot.core.gap import BLOCKED, PASSABLE, Assumptions, GapKind, KnowledgeGap
 from mintpilot.core.geometry import GridFrame
@@ -20,10 +21,8 @@ from mintpilot.core.ports import Ask, Fly, PlanSpace, Situation, Strategy
 from mintpilot.core.query import Combine, Query, Reply
 from mintpilot.core.semantic_map import Cell, Region, SemanticMap
 from mintpilot.core.task import Action
-from mintpilot.elicitation.objectives import query_objective
 from mintpilot.planning.task_planner import GridPlanner
 from mintpilot.reasoning.belief import condition, prior_belief
-from mintpilot.reasoning.metrics import impact_metric
 
 SHAPE = (24, 40)
 LIMITS = VehicleLimits(radius_m=0.01, margin_m=0.0, cruise_mps=1.0)
@@ -61,8 +60,8 @@ def first_situation(problem: PlanningProblem, settings: AskingSettings) -> Situa
         asked=(),
         silent=False,
         settings=settings,
-        metric=impact_metric(settings.impact_metric),
-        objective=query_objective(settings.objective),
+        metric=load("metric", settings.impact_metric)(),
+        objective=load("objective", settings.objective)(),
     )
 
 

@@ -20,10 +20,10 @@ import numpy as np
 from bench.question_games import Expectation, expectation, first_situation, random_problem
 from bench.sections import Section, Table, keep
 from bench.twenty_questions import TwentyQuestions, people, twenty_questions
+from mintpilot.assembly.registry import load
 from mintpilot.core.errors import LimitError
 from mintpilot.core.mission import AskingSettings
 from mintpilot.core.ports import Strategy
-from mintpilot.elicitation.objectives import query_objective
 from mintpilot.strategies.exhaustive import ExhaustiveStrategy
 from mintpilot.strategies.gap_by_gap import GapByGapStrategy
 from mintpilot.strategies.mint import MintStrategy
@@ -37,10 +37,10 @@ GAMES = {"information-gain": 1000, "ec2": 200}
 WRONG = 0.1
 
 METHODS: dict[str, Callable[[], Strategy]] = {
-    "optimal": partial(MintStrategy, query_objective("optimal")),
-    "information-gain": partial(MintStrategy, query_objective("information-gain")),
-    "ec2": partial(MintStrategy, query_objective("ec2")),
-    "value-of-information": partial(MintStrategy, query_objective("value-of-information")),
+    "optimal": partial(MintStrategy, load("objective", "optimal")()),
+    "information-gain": partial(MintStrategy, load("objective", "information-gain")()),
+    "ec2": partial(MintStrategy, load("objective", "ec2")()),
+    "value-of-information": partial(MintStrategy, load("objective", "value-of-information")()),
     "random": RandomQueryStrategy,
     "gap-by-gap": GapByGapStrategy,
     "ask-all": ExhaustiveStrategy,

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from bench.question_games import answered
+from mintpilot.assembly.registry import load
 from mintpilot.core.gap import Assumptions, Candidate, GapKind, KnowledgeGap
 from mintpilot.core.geometry import GridFrame
 from mintpilot.core.mission import AskingSettings
@@ -18,9 +19,7 @@ from mintpilot.core.plan import Leg, Plan, PlanningProblem, Site, Stop, VehicleL
 from mintpilot.core.ports import Ask, Situation
 from mintpilot.core.semantic_map import SemanticMap
 from mintpilot.core.task import Action
-from mintpilot.elicitation.objectives import query_objective
 from mintpilot.reasoning.belief import prior_belief
-from mintpilot.reasoning.metrics import impact_metric
 from mintpilot.strategies.mint import MintStrategy
 
 DATA = Path(__file__).resolve().parents[2] / "shared" / "data" / "twentyq" / "guess_who.json"
@@ -117,8 +116,8 @@ def opening(gap: KnowledgeGap, settings: AskingSettings) -> Situation:
         asked=(),
         silent=False,
         settings=settings,
-        metric=impact_metric("hausdorff"),
-        objective=query_objective(settings.objective),
+        metric=load("metric", "hausdorff")(),
+        objective=load("objective", settings.objective)(),
     )
 
 

@@ -6,13 +6,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from mintpilot.assembly.registry import load
 from mintpilot.core.gap import GapKind
 from mintpilot.core.mission import AskingSettings
 from mintpilot.core.ports import Ask, Fly, QueryObjective, Situation, Strategy
 from mintpilot.core.query import Combine, Query, Reply
-from mintpilot.elicitation.objectives import query_objective
 from mintpilot.reasoning.belief import condition, prior_belief
-from mintpilot.reasoning.metrics import impact_metric
 
 from .worlds import BruteForce, World
 
@@ -50,8 +49,8 @@ def open_situation(
         asked=(),
         silent=False,
         settings=settings,
-        metric=impact_metric(settings.impact_metric),
-        objective=objective or query_objective(settings.objective),
+        metric=load("metric", settings.impact_metric)(),
+        objective=objective or load("objective", settings.objective)(),
     )
 
 

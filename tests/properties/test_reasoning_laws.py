@@ -10,6 +10,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from mintpilot.assembly.registry import load
 from mintpilot.core.gap import Assumptions, Joint
 from mintpilot.core.mission import AskingSettings, CriticalityRule
 from mintpilot.core.ports import Ask
@@ -17,7 +18,6 @@ from mintpilot.core.query import Reply
 from mintpilot.core.tree import LeafReason, Mint, Node, StopReason
 from mintpilot.elicitation.candidates import candidate_queries
 from mintpilot.elicitation.choose import choose
-from mintpilot.elicitation.objectives import query_objective
 from mintpilot.reasoning.belief import prior_belief
 from mintpilot.reasoning.classes import class_entropy_bits, leaves_of
 from mintpilot.reasoning.entropy import entropy_bits
@@ -83,7 +83,7 @@ def test_the_two_parts_of_a_cut_cover_and_its_gain_is_at_most_a_bit(world: World
     mint = tree(world, EXACT)
     regret = regret_matrix(mint, EXACT)
     for name in ("information-gain", "ec2", "value-of-information"):
-        for scored in choose(candidate_queries(mint), mint, regret, query_objective(name), EXACT):
+        for scored in choose(candidate_queries(mint), mint, regret, load("objective", name)(), EXACT):
             yes = scored.query.truths(mint.belief)
             assert 0 <= scored.gain_bits <= 1
             assert 0 < scored.yes_probability < 1
@@ -99,9 +99,9 @@ def test_gain_is_the_fall_of_the_class_entropy(world: World) -> None:
     mint = tree(world, replace(EXACT, rule=CriticalityRule.PAPER, delta_d_m=0.0))
     p, classes = mint.belief.probability.ravel(), mint.class_of.ravel()
     asking = replace(EXACT, rule=CriticalityRule.PAPER)
-    for scored in choose(candidate_queries(mint), mint, regret_matrix(mint, asking), query_objective("ec2"), asking)[
-        :9
-    ]:
+    for scored in choose(
+        candidate_queries(mint), mint, regret_matrix(mint, asking), load("objective", "ec2")(), asking
+    )[:9]:
         left = 0.0
         for part in (scored.query.truths(mint.belief).ravel(), ~scored.query.truths(mint.belief).ravel()):
             mass = [p[part & (classes == c)].sum() for c in range(len(mint.classes))]
@@ -193,7 +193,7 @@ def test_any_order_of_questions_flies_within_delta_and_only_through_confirmed_re
 def test_good_objectives_are_near_the_optimum_and_never_ask_more_than_all(world: World) -> None:
     space = BruteForce(world)
     count = {
-        name: expected_questions(lambda n=name: MintStrategy(query_objective(n)), world, EXACT, space)
+        name: expected_questions(lambda n=name: MintStrategy(load("objective", n)()), world, EXACT, space)
         for name in ("optimal", "information-gain", "ec2")
     }
     everything = expected_questions(ExhaustiveStrategy, world, EXACT, space)
@@ -225,7 +225,7 @@ def test_a_larger_delta_never_raises_the_expected_questions_of_optimal(world: Wo
     space = BruteForce(world)
     tight, loose = (
         expected_questions(
-            lambda: MintStrategy(query_objective("optimal")), world, replace(EXACT, delta_c_s=delta), space
+            lambda: MintStrategy(load("objective", "optimal")()), world, replace(EXACT, delta_c_s=delta), space
         )
         for delta in (small, small + more)
     )

@@ -9,12 +9,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from mintpilot.assembly.registry import load, names
 from mintpilot.core.errors import UnknownNameError
 from mintpilot.reasoning.metrics import (
-    METRICS,
     FrechetMetric,
     expected_regret_s,
-    impact_metric,
     path_deviation_m,
     q_value_gap,
     resample,
@@ -46,19 +45,19 @@ def test_frechet_is_the_textbook_one(a: np.ndarray, b: np.ndarray) -> None:
     assert FrechetMetric().divergence(a, b) == pytest.approx(frechet(resample(a), resample(b)))
 
 
-@pytest.mark.parametrize("name", METRICS)
+@pytest.mark.parametrize("name", names("metric"))
 @settings(max_examples=15, deadline=None)
 @given(a=paths, b=paths)
 def test_distances_are_symmetric_and_nothing_between_equals(name: str, a: np.ndarray, b: np.ndarray) -> None:
-    metric = impact_metric(name)
+    metric = load("metric", name)()
     assert metric.divergence(a, b) == pytest.approx(metric.divergence(b, a))
     assert metric.divergence(a, b) >= 0
     assert metric.divergence(a, a) == 0
 
 
-@pytest.mark.parametrize("name", METRICS)
+@pytest.mark.parametrize("name", names("metric"))
 def test_parallel_lines_and_empty_paths(name: str) -> None:
-    metric = impact_metric(name)
+    metric = load("metric", name)()
     a = np.array([[0.0, 0.0, 0.0], [10.0, 0.0, 0.0]])
     expected = 1.5 if name == "path-variance" else 3.0
     assert metric.divergence(a, a + np.array([0.0, 3.0, 0.0])) == pytest.approx(expected)
@@ -72,8 +71,8 @@ def test_parallel_lines_and_empty_paths(name: str) -> None:
 def test_a_loop_is_far_for_frechet_but_near_for_hausdorff() -> None:
     there = np.array([[0.0, 0, 0], [10.0, 0, 0]])
     back_and_forth = np.array([[0.0, 0, 0], [10.0, 0, 0], [0.0, 0, 0], [10.0, 0, 0]])
-    assert impact_metric("hausdorff").divergence(there, back_and_forth) < 0.2
-    assert impact_metric("frechet").divergence(there, back_and_forth) > 4
+    assert load("metric", "hausdorff")().divergence(there, back_and_forth) < 0.2
+    assert load("metric", "frechet")().divergence(there, back_and_forth) > 4
 
 
 def test_resampling_is_even() -> None:
@@ -97,4 +96,4 @@ def test_losses_of_the_wrong_hypothesis() -> None:
 
 def test_metrics_are_found_by_name() -> None:
     with pytest.raises(UnknownNameError, match="frechet"):
-        impact_metric("frchet")
+        load("metric", "frchet")

@@ -6,11 +6,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from mintpilot.assembly.registry import load
 from mintpilot.core.mission import AskingSettings
 from mintpilot.core.ports import Ask, Fly, Strategy
 from mintpilot.core.query import Reply
 from mintpilot.core.tree import StopReason
-from mintpilot.elicitation.objectives import query_objective
 from mintpilot.strategies.exhaustive import ExhaustiveStrategy
 from mintpilot.strategies.gap_by_gap import GapByGapStrategy
 from mintpilot.strategies.mint import MintStrategy
@@ -226,6 +226,6 @@ def test_every_method_ends_and_marks_what_is_not_safe(kind: type[Strategy]) -> N
 @pytest.mark.parametrize("objective", ["information-gain", "ec2", "optimal", "value-of-information", "random"])
 def test_every_objective_ends(objective: str) -> None:
     world = random_world(np.random.default_rng(5), regions=3, goals=2)
-    strategy = MintStrategy(query_objective(objective))
+    strategy = MintStrategy(load("objective", objective)())
     for truth, _ in hypotheses(world):
         assert play(strategy, open_situation(world, EXACT), truth).questions <= 20

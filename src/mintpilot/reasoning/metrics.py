@@ -7,7 +7,6 @@ import math
 import numpy as np
 from numba import njit
 
-from mintpilot.core.errors import UnknownNameError
 from mintpilot.core.geometry import Floats
 from mintpilot.core.ports import ImpactMetric
 
@@ -123,17 +122,3 @@ def expected_regret_s(regret_s: Floats, probability: Floats) -> float:
 
 def _of_empty(a_m: Floats, b_m: Floats) -> float:
     return 0.0 if len(a_m) == len(b_m) else float("inf")
-
-
-METRICS: dict[str, type[ImpactMetric]] = {
-    "frechet": FrechetMetric,
-    "hausdorff": HausdorffMetric,
-    "path-variance": PathVarianceMetric,
-}
-
-
-def impact_metric(name: str) -> ImpactMetric:
-    """The metric with that name. Raises `UnknownNameError` for others."""
-    if name not in METRICS:
-        raise UnknownNameError("impact metric", name, METRICS)
-    return METRICS[name]()
