@@ -45,8 +45,10 @@ def random_path(map: SemanticMap, seed: int) -> Floats | None:
     if len(cells) == 0:
         return None
     start, goal = (tuple(int(i) for i in c) for c in cells[np.random.default_rng(seed).integers(len(cells), size=2)])
-    length, way = shortest_path(free, start, goal)
-    return map.frame.centres_of(way) if np.isfinite(length) and len(way) else None
+    try:
+        return map.frame.centres_of(shortest_path(free, start, goal)[1])
+    except InfeasibleError:
+        return None
 
 
 def assert_within_limits(t: Trajectory, speed_mps: float) -> None:
@@ -93,7 +95,7 @@ def test_duration_is_near_length_over_cruise(seed: int) -> None:
     t = plan_trajectory(path, map=map, limits=LIMITS)
     length = np.linalg.norm(np.diff(path, axis=0), axis=1).sum()
     start_and_stop = LIMITS.cruise_mps / LIMITS.max_acceleration_mps2 + SMOOTHING_S
-    assert t.duration_s <= 1.15 * length / LIMITS.cruise_mps + start_and_stop + 0.5
+    assert t.duration_s <= 1.15 * length / LIMITS.cruise_mps + start_and_stop + 1.0
     assert t.length_m <= length + 1e-6
 
 
