@@ -146,7 +146,8 @@ def test_a_one_point_path_hovers() -> None:
 @given(start=st.floats(-7, 7), end=st.floats(-7, 7), way=st.floats(-3.1, 3.1), length=st.floats(0.3, 4))
 def test_headings_start_and_end_as_asked(start: float, end: float, way: float, length: float) -> None:
     here = np.array([5.0, 7.0, 1.1])
-    path = np.array([here, here + (length * np.cos(way), length * np.sin(way), 0.0)])
+    there = here + np.array([length * np.cos(way), length * np.sin(way), 0.0])
+    path = np.stack([here, there])
     t = plan_trajectory(path, map=open_hall(), limits=LIMITS, start_yaw_rad=start, end_yaw_rad=end)
     assert t.yaw_rad[0] == start
     assert np.cos(t.yaw_rad[-1] - end) == pytest.approx(1.0)
