@@ -121,7 +121,9 @@ class MapBuilder:
         """
         known = previous if previous is not None else self._last
         if known is not None and known.frame != self._frame:
-            raise MapError(f"previous map on {known.frame}, this builder on {self._frame}: they must be the same lattice")
+            raise MapError(
+                f"previous map on {known.frame}, this builder on {self._frame}: they must be the same lattice"
+            )
         cells = self._voxels()
         draft = Draft(
             frame=self._frame,
@@ -135,7 +137,7 @@ class MapBuilder:
         objects = fused_objects(self._tracks.all, draft)
         for thing in objects:
             if thing.label == "fire":  # flames return hardly any depth, yet nobody flies through them
-                cells[cells_in(self._frame, thing.box_m)] = Cell.OCCUPIED
+                cells[cells_in(self._frame, self._blaze(thing.box_m)) & self._inside] = Cell.OCCUPIED
         cells[self._flown & self._inside] = Cell.FREE
         clouds = self._clouds.clouds(self._volume, self._settings)
         cells[self._clouds.front_of(clouds, self._solid) & (cells == Cell.OCCUPIED)] = Cell.UNKNOWN
@@ -149,6 +151,13 @@ class MapBuilder:
         rooms = fused_rooms(self._tracks.all, draft, self._priors[1])
         self._last = SemanticMap(frame=self._frame, cells=cells, objects=objects, regions=regions, rooms=rooms)
         return self._last
+
+    def _blaze(self, flames: Box) -> Box:
+        """Where flames may reach: they move, and only their brightest part is recognised."""
+        reach = self._settings.fire_margin_m
+        (x0, y0, _), (x1, y1, z1) = flames.lo_m, flames.hi_m
+        floor = min(self._volume.lo_m[2], flames.lo_m[2])
+        return Box(lo_m=(x0 - reach, y0 - reach, floor), hi_m=(x1 + reach, y1 + reach, z1 + reach))
 
     def _voxels(self) -> NDArray[np.uint8]:
         cells = np.full(self._frame.shape, Cell.UNKNOWN, np.uint8)

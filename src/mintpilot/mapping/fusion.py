@@ -49,9 +49,7 @@ def fused_objects(tracks: Sequence[Track], draft: Draft) -> tuple[MapObject, ...
     pairs = match([[closeness(t.box_m, o.box_m) if t.label == o.label else 0.0 for o in old] for t in kept])
     for thing in old:
         draft.names.seen(thing.id)
-    objects = [
-        t.as_object(old[pairs[i]].id if i in pairs else draft.names.new(t.label)) for i, t in enumerate(kept)
-    ]
+    objects = [t.as_object(old[pairs[i]].id if i in pairs else draft.names.new(t.label)) for i, t in enumerate(kept)]
     backed = set(pairs.values())
     objects += [o for j, o in enumerate(old) if j not in backed and not _gone(o, tracks, draft)]
     return tuple(sorted(objects, key=lambda o: _order(o.id)))
@@ -60,8 +58,8 @@ def fused_objects(tracks: Sequence[Track], draft: Draft) -> tuple[MapObject, ...
 def fused_regions(clouds: Sequence[Cloud], draft: Draft, prior_passable: float) -> tuple[Region, ...]:
     """One region per cloud, and every other region of the previous map unchanged.
 
-    A cloud takes over the answer of the region that it overlaps. Where it overlaps several (two clouds turned out to be one), it is
-    passable only if all of them are, and not passable as soon as one is not.
+    A cloud takes over the answer of the region that it overlaps. Where it overlaps several (two clouds turned out to be
+    one), it is passable only if all of them are, and not passable as soon as one is not.
     """
     old = list(draft.previous.regions) if draft.previous is not None else []
     for region in old:
@@ -96,11 +94,7 @@ def fused_regions(clouds: Sequence[Cloud], draft: Draft, prior_passable: float) 
 
 def fused_rooms(tracks: Sequence[Track], draft: Draft, prior_occupied: float) -> tuple[Room, ...]:
     """One room per closed door, with the answer and the search of the previous map; rooms of old stay."""
-    doors = [
-        t
-        for t in tracks
-        if t.label == "door" and (len(t.frames) >= 2 or t.score >= draft.settings.sure_score)
-    ]
+    doors = [t for t in tracks if t.label == "door" and (len(t.frames) >= 2 or t.score >= draft.settings.sure_door)]
     old = draft.previous.rooms if draft.previous is not None else ()
     for room in old:
         draft.names.seen(room.id)
@@ -120,9 +114,7 @@ def fused_rooms(tracks: Sequence[Track], draft: Draft, prior_occupied: float) ->
             best_view=door.best_view,
         )
         if mine is not None:
-            room = replace(
-                room, occupied=mine.occupied, searched=mine.searched, prior_occupied=mine.prior_occupied
-            )
+            room = replace(room, occupied=mine.occupied, searched=mine.searched, prior_occupied=mine.prior_occupied)
         result.append(room)
     backed = set(pairs.values())
     result += [r for j, r in enumerate(old) if j not in backed]

@@ -33,9 +33,13 @@ class MappingSettings:
     """Log-odds below which a voxel is free; between the two it is unknown."""
     sure_score: float = 0.9
     """An object seen once only is kept from this score on."""
+    fire_margin_m: float = 0.4
+    """Nobody flies nearer than this to flames that were seen."""
+    sure_door: float = 0.82
+    """A door seen once only is kept from this score on: when its one sighting was certain."""
     smoke_share: float = 0.4
     """A voxel belongs to a cloud's front when at least this share of the frames that tell of it show smoke there."""
-    smoke_margin_m: float = 0.5
+    smoke_margin_m: float = 0.3
     """A cloud is this much larger than its visible front: its thin edge is seen through."""
     smoke_gap_m: float = 0.8
     """Smoke points further apart than this belong to different clouds."""
@@ -53,5 +57,6 @@ class MappingSettings:
             raise MapError(f"free_below {self.free_below} must be below occupied_above {self.occupied_above}")
         if self.max_rays < 1 or not 0 <= self.min_range_m < self.max_range_m:
             raise MapError(
-                f"max_rays {self.max_rays} must be at least 1, and ranges {self.min_range_m} to {self.max_range_m} m in order"
+                f"max_rays {self.max_rays} must be at least 1, and ranges "
+                f"{self.min_range_m} to {self.max_range_m} m in order"
             )
