@@ -111,7 +111,7 @@ def test_whatever_a_model_proposes_is_sound_or_nothing(text: str) -> None:
 
 
 def _agreeing(prompt: str) -> str:
-    return "no" if "the opposite" in prompt else "Yes."
+    return json.dumps({"reading": "no" if "the opposite" in prompt else "yes"})
 
 
 def test_a_model_that_agrees_with_itself_reads_what_the_rules_do_not() -> None:
@@ -122,7 +122,7 @@ def test_a_model_that_agrees_with_itself_reads_what_the_rules_do_not() -> None:
 
 
 def test_a_model_that_always_says_yes_is_not_believed() -> None:
-    liar = FunctionModel(lambda _: "yes")
+    liar = FunctionModel(lambda _: '{"reading": "yes"}')
     assert understand_with_model("the crimson fellow", questions.BOX, liar).reading is Reading.OTHER
 
 
@@ -130,7 +130,7 @@ def test_the_rules_come_first_and_orders_are_theirs() -> None:
     liar = FunctionModel(_agreeing)
     assert understand_with_model("no", questions.BOX, liar).reply is Reply.NO
     assert understand_with_model("stop", questions.BOX, liar).reading is Reading.COMMAND
-    general = FunctionModel(lambda _: "command")
+    general = FunctionModel(lambda _: '{"reading": "command"}')
     assert understand_with_model("the crimson fellow", questions.BOX, general).reading is Reading.OTHER
 
 

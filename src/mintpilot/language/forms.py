@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from typing import TypeVar
+from typing import Literal, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
@@ -36,6 +36,12 @@ class Cuts(_Strict):
     """What a model proposes to ask."""
 
     cuts: list[Cut] = Field(max_length=20)
+
+
+class AnswerReading(_Strict):
+    """What a model takes an answer for. Orders are not among it: those must be heard by the rules."""
+
+    reading: Literal["yes", "no", "unsure", "other"]
 
 
 class Steps(_Strict):

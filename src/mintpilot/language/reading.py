@@ -12,7 +12,7 @@ from mintpilot.core.ports import LanguageModel
 from mintpilot.core.query import Question
 from mintpilot.core.task import Task
 from mintpilot.language.answers import Reading, Understood, understand_answer
-from mintpilot.language.forms import Steps, read_form
+from mintpilot.language.forms import AnswerReading, Steps, read_form
 from mintpilot.language.instruction import Capabilities, parse_instruction
 from mintpilot.language.phrases import singular
 
@@ -126,17 +126,17 @@ def parse_with_model(
 
 def _ask(model: LanguageModel, text: str, question: Question, timeout_s: float, *, turned: bool) -> Reading | None:
     said = " ".join(text.split())
-    shots = (f"Question: {q}\nReply: {a}\nAnswer: {no if turned else yes}" for q, a, yes, no in _SHOTS)
+    shots = (f'Question: {q}\nReply: {a}\nAnswer: {{"reading": "{no if turned else yes}"}}' for q, a, yes, no in _SHOTS)
     asked = f"Question: {question.text}\nReply: {said}\nAnswer:"
     prompt = "\n".join((_TURNED if turned else _TASK, *shots, asked))
     try:
-        completion = model.complete(prompt, schema=None, timeout_s=timeout_s)
+        completion = model.complete(prompt, schema=AnswerReading, timeout_s=timeout_s)
     except MintPilotError:
         return None
     except Exception:  # a stranger's model may fail in any way: then it has no say
         return None
-    found = re.match(r"\W*(yes|no|unsure|other)\b", completion.text.lower())
-    return Reading(found[1]) if found else None
+    found = read_form(completion.text, AnswerReading)
+    return Reading(found.reading) if found is not None else None
 
 
 def _steps(model: LanguageModel, text: str, timeout_s: float) -> list[str]:
