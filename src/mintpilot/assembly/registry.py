@@ -19,7 +19,9 @@ BUILT_IN: Final = MappingProxyType(
             {
                 "mint": "mintpilot.strategies.mint:MintStrategy",
                 "exhaustive": "mintpilot.strategies.exhaustive:ExhaustiveStrategy",
+                "entropy-threshold": "mintpilot.strategies.entropy_threshold:EntropyThresholdStrategy",
                 "gap-by-gap": "mintpilot.strategies.gap_by_gap:GapByGapStrategy",
+                "knowno": "mintpilot.strategies.knowno:KnowNoStrategy",
                 "random": "mintpilot.strategies.random_query:RandomQueryStrategy",
                 "passive-conservative": "mintpilot.strategies.passive:ConservativeStrategy",
                 "passive-risky": "mintpilot.strategies.passive:RiskyStrategy",

@@ -13,6 +13,7 @@ from typing import Annotated, Literal, TypeAlias
 from cyclopts import App, CycloptsError, Parameter
 from rich.console import Console
 
+from mintpilot.cli.bench import bench
 from mintpilot.cli.exits import EPILOGUE, ExitCode, fail, guarded
 
 app = App(
@@ -194,6 +195,9 @@ def doctor(*, json: Json = False, debug: Flag = False) -> ExitCode:
     from mintpilot.cli.doctor import examine
 
     return guarded(lambda: examine(as_json=json), as_json=json, debug=debug)
+
+
+app.command(bench)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -1,0 +1,65 @@
+"""Names of methods: a strategy, with the settings that it is run with."""
+
+from __future__ import annotations
+
+import inspect
+from types import MappingProxyType
+from typing import Final
+
+from pydantic import BaseModel, ConfigDict
+
+from mintpilot.assembly.registry import load, names
+from mintpilot.core.errors import UnknownNameError
+from mintpilot.core.ports import Strategy
+
+Number = float | int
+
+
+class Method(BaseModel):
+    """One row of a table: what is compared."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    name: str
+    """As it stands in tables."""
+    strategy: str
+    """Name in the registry of strategies."""
+    asking: dict[str, str | float] = {}
+    """Fields of `AskingSettings` that differ from the experiment's."""
+    arguments: dict[str, float] = {}
+    """What the strategy is made with, besides a seed."""
+
+
+_OBJECTIVES = ("information-gain", "ec2", "value-of-information", "optimal")
+VARIANTS: Final = MappingProxyType(
+    {
+        "mint-paper": Method(name="mint-paper", strategy="mint", asking={"rule": "paper"}),
+        **{name: Method(name=name, strategy="mint", asking={"objective": name}) for name in _OBJECTIVES},
+    }
+)
+"""Methods that are a strategy with other settings. `mint` itself is the regret rule with information gain."""
+
+
+def method_of(name: str) -> Method:
+    """The method with that name: one of `VARIANTS`, or any strategy, plug-ins included.
+
+    Raises:
+        UnknownNameError: nobody registered it; the nearest known name is given.
+        InputError: a plug-in is registered but cannot be imported.
+    """
+    if name in VARIANTS:
+        return VARIANTS[name]
+    if name not in names("strategy"):
+        raise UnknownNameError("strategy", name, (*names("strategy"), *VARIANTS))
+    load("strategy", name)
+    return Method(name=name, strategy=name)
+
+
+def make_strategy(method: Method, seed: int) -> Strategy:
+    """A fresh strategy for one trial. Those that take a ``seed`` get the trial's."""
+    kind = load("strategy", method.strategy)
+    arguments: dict[str, Number] = dict(method.arguments)
+    if "seed" in inspect.signature(kind).parameters:
+        arguments["seed"] = seed
+    made: Strategy = kind(**arguments)
+    return made

@@ -1,0 +1,82 @@
+"""The summary on a terminal."""
+
+from __future__ import annotations
+
+from rich.console import Console
+from rich.table import Table
+
+from mintpilot.benchmark.experiment import Experiment
+from mintpilot.benchmark.summary import Row, Summary
+
+PAPER = {
+    "table1": {"pure-llm": "77.0 %, 0.0", "exhaustive": "100.0 %, 2.0", "mint": "100.0 %, 1.4"},
+    "boxes": {"passive-conservative": "35 %", "mint": "100 %, 20.7 s"},
+}
+"""What the paper states: success, mean questions; for the boxes seconds from start to completed trajectories."""
+HEADER = ("method", "n", "success", "success where possible", "questions, mean", "cost, mean", "flight, mean")
+
+
+def print_summary(experiment: Experiment, summary: Summary, console: Console) -> None:
+    """Prints one table for each cell, then what is known of the worlds."""
+    paper = PAPER.get(experiment.name, {})
+    for cell in experiment.cells:
+        rows = [row for row in summary.rows if row.cell == cell.name]
+        if not rows:
+            continue
+        timed = experiment.vehicle == "mujoco"
+        header = (*HEADER, *(("latency, median",) if timed else ()), *(("paper",) if paper else ()))
+        table = Table(*header, title=cell.name or experiment.name, title_justify="left", title_style="bold")
+        for row in rows:
+            seconds = row.latency_s.get("total")
+            late = ((f"{seconds:.1f} s" if seconds is not None else "-"),) if timed else ()
+            table.add_row(*row_words(row), *late, *((paper.get(row.strategy, ""),) if paper else ()))
+        console.print(table)
+    console.print(_worlds(summary), highlight=False, soft_wrap=True)
+
+
+def row_words(row: Row) -> tuple[str, ...]:
+    """The cells of `HEADER`."""
+    possible = row.success_rate_possible
+    return (
+        row.strategy,
+        str(row.n),
+        f"{percent(row.success_rate)} {between(row.success_ci95)}",
+        f"{percent(possible)} {between(row.success_possible_ci95)}" if possible is not None else "-",
+        _mean(row.mean_queries, row.mean_queries_ci95, 2),
+        f"{_mean(row.mean_cost_s, row.mean_cost_ci95, 0)} s",
+        f"{row.mean_flight_s:.0f} s",
+    )
+
+
+def percent(share: float) -> str:
+    """A share in words."""
+    return f"{100 * share:.1f} %"
+
+
+def between(interval: tuple[float, float]) -> str:
+    """An interval of shares in words."""
+    return f"[{100 * interval[0]:.1f}, {100 * interval[1]:.1f}]"
+
+
+def _mean(value: float, interval: tuple[float, float] | None, digits: int) -> str:
+    if interval is None:
+        return f"{value:.{digits}f}"
+    return f"{value:.{digits}f} [{interval[0]:.{digits}f}, {interval[1]:.{digits}f}]"
+
+
+def _worlds(summary: Summary) -> str:
+    lines = [
+        f"In {summary.possible} of {summary.worlds} worlds a planner that is told the truth finds a plan; "
+        "elsewhere nobody can succeed."
+    ]
+    if summary.least_possible_queries is not None:
+        lines.append(
+            f"Least possible questions, mean: {summary.least_possible_queries:.3f} (exact dynamic programming)."
+        )
+    for share in summary.gaps:
+        where = f"{share.cell}: " if share.cell else ""
+        lines.append(
+            f"{where}{share.kind} gaps: {share.gaps}; {percent(share.mattered)} {between(share.mattered_ci95)} really "
+            f"mattered, {percent(share.could_matter)} might have."
+        )
+    return "\n".join(lines)

@@ -1,0 +1,141 @@
+"""One trial: one method flies one mission in one world, and one record comes of it, whatever happens."""
+
+from __future__ import annotations
+
+import time
+import traceback
+from collections.abc import Callable
+from dataclasses import replace
+
+from mintpilot.assembly.crews import Choices, VehicleChoice, crew_for, scripted_operator
+from mintpilot.assembly.worlds import World
+from mintpilot.benchmark.conditions import asking_for
+from mintpilot.benchmark.deadline import TrialTimeoutError, deadline
+from mintpilot.benchmark.experiment import Cell, Experiment
+from mintpilot.benchmark.methods import Method, make_strategy
+from mintpilot.benchmark.records import TrialRecord
+from mintpilot.benchmark.tally import Tally
+from mintpilot.core.mission import Outcome, Verdict
+from mintpilot.core.ports import Planner
+from mintpilot.core.semantic_map import SemanticMap
+from mintpilot.mission.loop import Crew, fly_mission
+from mintpilot.mission.schema import OperatorSpec
+
+RAISED = "raised"
+"""Outcome of a trial whose method, or a part under it, raised an exception."""
+TIMED_OUT = "timed-out"
+"""Outcome of a trial that computed longer than it may."""
+CRASHED = "crashed"
+"""Outcome of a trial whose process died."""
+
+
+def fly_trial(
+    experiment: Experiment, cell: Cell, method: Method, world: World, planner: Planner | None = None
+) -> TrialRecord:
+    """Flies one mission. Never raises for what the method does: that is the trial's own failure.
+
+    Args:
+        experiment: the configuration.
+        cell: the kind of world and the condition.
+        method: who decides.
+        world: as the drone believes it; the truth is the scene's.
+        planner: shares plans with other methods in the same world; None for one of its own.
+    """
+    begun = time.perf_counter()
+    tally, flight = Tally(), _Flight()
+    error = ""
+    try:
+        with deadline(experiment.time_limit_s):
+            verdict = flight.fly(experiment, cell, method, world, planner, tally)
+            outcome, reason = verdict.outcome.value, verdict.reason
+    except TrialTimeoutError:
+        outcome = TIMED_OUT
+        reason = f"'{method.name}' was not done within {experiment.time_limit_s:g} s of computing"
+    except Exception as raised:  # a stranger's strategy may raise anything: it is recorded, and the run goes on
+        outcome, reason = RAISED, f"'{method.name}' raised {type(raised).__name__}: {raised}"
+        error = traceback.format_exc(limit=-12)
+    return TrialRecord(
+        experiment=experiment.name,
+        cell=cell.name,
+        seed=world.seed,
+        method=method.name,
+        vehicle=experiment.vehicle,
+        outcome=outcome,
+        success=outcome == Outcome.SUCCESS.value,
+        reason=reason,
+        questions=len(tally.asked),
+        unsure=tally.unsure,
+        contradictions=tally.contradictions,
+        flight_s=flight.seconds(),
+        flown_m=tally.flown_m,
+        planned_s=tally.planned_s,
+        stop_reason=tally.stop_reason,
+        stages_s=tally.stages,
+        deliberation_max_s=tally.deliberation_max_s,
+        survey_s=tally.survey_s,
+        frames=tally.frames,
+        asked=tuple(tally.asked),
+        path_m=tally.path(),
+        wall_s=time.perf_counter() - begun,
+        error=error,
+    )
+
+
+def broken_trial(experiment: Experiment, cell: Cell, seed: int, method: str, outcome: str, reason: str) -> TrialRecord:
+    """The record of a trial of which nothing came back."""
+    return TrialRecord(
+        experiment=experiment.name,
+        cell=cell.name,
+        seed=seed,
+        method=method,
+        vehicle=experiment.vehicle,
+        outcome=outcome,
+        success=False,
+        reason=reason,
+    )
+
+
+class _Flight:
+    """One mission, and its clock."""
+
+    def __init__(self) -> None:
+        self._begun_s = 0.0
+        self._ended_s = 0.0
+
+    def seconds(self) -> float:
+        """Mission clock from the end of the survey to the end."""
+        return max(0.0, self._ended_s - self._begun_s)
+
+    def fly(
+        self,
+        experiment: Experiment,
+        cell: Cell,
+        method: Method,
+        world: World,
+        planner: Planner | None,
+        tally: Tally,
+    ) -> Verdict:
+        condition = cell.condition
+        asking = asking_for(world.mission.asking, experiment, condition, method)
+        world = replace(world, mission=replace(world.mission, asking=asking))
+        person = OperatorSpec(
+            answer_error=condition.answer_error, unsure=condition.unsure_rate, latency_s=experiment.think_s
+        )
+        choices = Choices(strategy="mint", vehicle=VehicleChoice(experiment.vehicle))
+        operator = scripted_operator(world, person)
+        with crew_for(world, choices, operator=operator, recorder=tally) as crew:
+            thinking = replace(crew.thinking, strategy=make_strategy(method, world.seed))
+            if planner is not None:
+                thinking = replace(thinking, planner=planner)
+            named = replace(crew, thinking=thinking, strategy_name=method.name, survey=self._timed(crew))
+            verdict = fly_mission(named)
+            self._ended_s = crew.vehicle.state().time_s
+        return verdict
+
+    def _timed(self, crew: Crew) -> Callable[[], SemanticMap]:
+        def survey() -> SemanticMap:
+            first = crew.survey()
+            self._begun_s = self._ended_s = crew.vehicle.state().time_s
+            return first
+
+        return survey

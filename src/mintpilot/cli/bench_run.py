@@ -1,0 +1,131 @@
+"""What the commands of ``mintpilot bench`` share: running with progress, and telling the results."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeRemainingColumn
+from rich.progress import Progress as Bar
+
+from mintpilot.benchmark.experiment import Experiment
+from mintpilot.benchmark.records import Record
+from mintpilot.benchmark.runner import Executor, Progress, RunOptions, run_experiment
+from mintpilot.benchmark.store import read_config, read_records, write_parquet
+from mintpilot.benchmark.summary import Row, Summary, summarise
+from mintpilot.benchmark.tables import print_summary
+from mintpilot.cli.exits import ExitCode
+from mintpilot.core.errors import MissingPartError
+
+JSON_VERSION = 1
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BenchOptions:
+    """How an experiment is run, as the command line says it."""
+
+    jobs: int
+    executor: Executor
+    ray_address: str
+    out: Path | None
+    as_json: bool
+
+
+def run_bench(experiment: Experiment, options: BenchOptions) -> ExitCode:
+    """Runs what is left of the experiment, and prints its tables from the records."""
+    errors = Console(stderr=True, highlight=False, soft_wrap=True)
+    folder = options.out or Path("runs") / f"bench-{experiment.name}-{experiment.digest()}"
+    run = RunOptions(folder=folder, jobs=options.jobs, executor=options.executor, ray_address=options.ray_address)
+    try:
+        with _Meter(errors, experiment) as meter:
+            progress = run_experiment(experiment, run, meter)
+    except KeyboardInterrupt:
+        errors.print(f"Stopped. Finished trials are in {folder}; the same command goes on from there.")
+        raise
+    errors.print(_throughput(progress, options))
+    try:
+        write_parquet(folder)
+    except MissingPartError as error:
+        errors.print(f"No Parquet was made, the records stay NDJSON: {error}")
+    trials, worlds = read_records(folder)
+    last = experiment.seed + experiment.trials
+    summary = summarise(experiment, [t for t in trials if t.seed < last], [w for w in worlds if w.seed < last])
+    if options.as_json:
+        print(json.dumps(as_json(experiment, summary, folder, progress), ensure_ascii=False))
+    else:
+        print_summary(experiment, summary, Console())
+        errors.print(f"Records: {folder}. A page of them: mintpilot bench report {folder}")
+    return ExitCode.SUCCESS
+
+
+def as_json(experiment: Experiment, summary: Summary, folder: Path, progress: Progress) -> dict[str, object]:
+    """The object that ``--json`` prints."""
+    return {
+        "schema_version": JSON_VERSION,
+        "experiment": experiment.name,
+        "rows": [_row(row) for row in summary.rows],
+        "least_possible_queries": summary.least_possible_queries,
+        "worlds": summary.worlds,
+        "possible_worlds": summary.possible,
+        "gaps": [share.model_dump(mode="json") for share in summary.gaps],
+        "config": experiment.model_dump(mode="json"),
+        "records": str(folder),
+        "missions_per_minute": round(progress.per_minute, 1) if progress.done else None,
+    }
+
+
+def write_page(folders: Sequence[Path], out: Path) -> ExitCode:
+    """Writes the page of those folders."""
+    from mintpilot.benchmark.report import write_report
+
+    write_report([(read_config(folder), *read_records(folder), str(folder)) for folder in folders], out)
+    print(out)
+    return ExitCode.SUCCESS
+
+
+def _row(row: Row) -> dict[str, object]:
+    return row.model_dump(mode="json")
+
+
+def _throughput(progress: Progress, options: BenchOptions) -> str:
+    if not progress.done:
+        return f"All {progress.trials} trials had a record already; nothing was flown."
+    kept = f" ({progress.before} were finished before)" if progress.before else ""
+    return (
+        f"{progress.done} missions{kept} in {progress.seconds:.1f} s: {progress.per_minute:.0f} missions per minute, "
+        f"{options.jobs} workers, executor {options.executor}."
+    )
+
+
+class _Meter:
+    """A bar on a terminal; elsewhere a line now and then."""
+
+    def __init__(self, console: Console, experiment: Experiment) -> None:
+        self._console = console
+        self._label = f"{experiment.name}, {experiment.vehicle}"
+        self._bar: Bar | None = None
+        self._last_s = 0.0
+
+    def __enter__(self) -> _Meter:
+        if self._console.is_terminal:
+            columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
+            self._bar = Bar(*columns, console=self._console, transient=True)
+            self._bar.start()
+            self._bar.add_task(self._label, total=None)
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self._bar is not None:
+            self._bar.stop()
+
+    def __call__(self, progress: Progress, _record: Record) -> None:
+        """Shows how far it is."""
+        done = progress.before + progress.done
+        if self._bar is not None:
+            self._bar.update(self._bar.task_ids[0], completed=done, total=progress.trials)
+        elif progress.seconds - self._last_s >= 30:
+            self._last_s = progress.seconds
+            self._console.print(f"{self._label}: {done} of {progress.trials}, {progress.per_minute:.0f} per minute")
