@@ -328,3 +328,12 @@ def test_any_value_in_any_place_is_accepted_or_named_there(tmp_path_factory, mis
 
 def test_bounds_are_those_that_the_messages_state():
     assert (reader_yaml.MAX_BYTES, reader_yaml.MAX_DEPTH, reader_yaml.MAX_VALUES) == (1_000_000, 20, 50_000)
+
+
+@pytest.mark.parametrize("line", ['name: "half \\ud800"', '"half \\udfff": 1'])
+def test_half_a_surrogate_pair_is_no_text(tmp_path, line):
+    path = tmp_path / "mission.yaml"
+    path.write_text(f"mintpilot: 1\n{line}\n")
+    (problem,) = find_problems(path)
+    assert problem.line == 2
+    assert "surrogate" in problem.message

@@ -1,1 +1,30 @@
-"""Checks for plug-ins, ours or a stranger's."""
+"""Checks for plug-ins, ours and a stranger's: does it keep the contract of its port?
+
+    from mintpilot.conformance import check_strategy
+
+    def test_my_method_keeps_the_contract():
+        check_strategy(MyMethod)
+
+Every check takes a function that makes a fresh part (a class will do) and may call it more than once. It returns
+nothing, or raises `mintpilot.core.errors.ConformanceError`, which says what was asked, what came back, and the rule.
+"""
+
+from __future__ import annotations
+
+from mintpilot.conformance.flying import check_vehicle
+from mintpilot.conformance.keeping import check_recorder
+from mintpilot.conformance.operators import check_operator
+from mintpilot.conformance.planning import check_metric, check_planner
+from mintpilot.conformance.seeing import check_perception
+from mintpilot.conformance.strategies import check_objective, check_strategy
+
+__all__ = [
+    "check_metric",
+    "check_objective",
+    "check_operator",
+    "check_perception",
+    "check_planner",
+    "check_recorder",
+    "check_strategy",
+    "check_vehicle",
+]

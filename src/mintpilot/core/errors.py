@@ -4,7 +4,8 @@
     ├── InputError            the user gave something wrong: change the input
     │   ├── MissionError      … in a mission file, with the place of the mistake
     │   ├── MapError          … in a map, scene or picture
-    │   └── UnknownNameError  … a name nobody registered; the nearest known one is given
+    │   ├── UnknownNameError  … a name nobody registered; the nearest known one is given
+    │   └── ConformanceError  … a plug-in that breaks the contract of its port
     ├── InfeasibleError       the input is sound, but nothing can be flown
     ├── LimitError            the work would pass a stated bound: raise the bound or shrink the work
     ├── MissingPartError      an optional part is not installed: install it
@@ -52,6 +53,10 @@ class UnknownNameError(InputError):
         near = difflib.get_close_matches(name, names, n=1, cutoff=0.4)
         hint = f" Did you mean '{near[0]}'?" if near else ""
         super().__init__(f"unknown {kind} '{name}'.{hint} Known: {', '.join(names) or '(none)'}.")
+
+
+class ConformanceError(InputError):
+    """A plug-in breaks the contract of its port."""
 
 
 class InfeasibleError(MintPilotError):

@@ -137,6 +137,7 @@ class _Builder:
         if isinstance(event, yaml.SequenceStartEvent):
             return self._sequence(path)
         assert isinstance(event, yaml.ScalarEvent)
+        _refuse_halves(event.value, line)
         return scalar(event.value) if event.implicit[0] else event.value
 
     def _mapping(self, path: Path_) -> dict[str, Value]:
@@ -145,6 +146,7 @@ class _Builder:
             if not isinstance(event, yaml.ScalarEvent):
                 raise _RefusedError(_line(event), "a key must be a word; quote it if it holds brackets or braces")
             key, line = event.value, _line(event)
+            _refuse_halves(key, line)
             here = (*path, key)
             if key in mapping:
                 message = f"'{key}' is given again (first on line {self._lines[here]}); keep one of them"
@@ -164,6 +166,14 @@ class _Builder:
 
 def _line(event: yaml.Event) -> int:
     return event.start_mark.line + 1 if event.start_mark else 1
+
+
+def _refuse_halves(text: str, line: int) -> None:
+    r"""Half of a surrogate pair (an escape such as ``"\ud800"``) is no text: nothing could be written of it."""
+    if any("\ud800" <= c <= "\udfff" for c in text):
+        raise _RefusedError(
+            line, "half of a surrogate pair, such as \\ud800, is no character; write the character itself"
+        )
 
 
 _INT = re.compile(r"[-+]?[0-9]{1,18}")

@@ -37,7 +37,8 @@ def event_line(event: Event, *, number: int, at_s: float) -> bytes:
         at_s: when it was recorded, seconds since 1970.
     """
     body = {"event": type(event).__name__, "number": number, "at_s": round(at_s, 3), **_fields(event)}
-    return json.dumps(body, ensure_ascii=False, allow_nan=False, separators=(",", ":")).encode() + b"\n"
+    line = json.dumps(body, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
+    return line.encode("utf-8", "replace") + b"\n"
 
 
 def read_events(path: Path) -> tuple[Mapping[str, JsonValue], ...]:

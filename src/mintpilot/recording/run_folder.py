@@ -142,7 +142,9 @@ class RunFolder(Recorder):
         self._torn = False
 
     def _write_record(self, unfinished: str) -> MissionRecord:
-        record = build_record(self._history, run_dir=str(self.path), unfinished=unfinished)
+        record = build_record(
+            self._history, run_dir=str(self.path).encode("utf-8", "replace").decode(), unfinished=unfinished
+        )
         self._noted = len(self._lost)
         if self._lost:
             lost = NoticeRecord(kind="record-incomplete", text=_loss(self._lost))
@@ -156,6 +158,8 @@ class RunFolder(Recorder):
             write()
         except OSError as error:
             self._lost.append(f"{what} ({error.strerror or error})")
+        except ValueError as error:  # words from outside that are no text
+            self._lost.append(f"{what} ({error})")
 
 
 def new_run_path(base: Path, name: str, now: datetime) -> Path:

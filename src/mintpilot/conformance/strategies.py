@@ -1,0 +1,153 @@
+"""Checks of methods of asking, and of what they weigh questions by."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from mintpilot.assembly.registry import load
+from mintpilot.conformance.sample import require, sample_world
+from mintpilot.core.gap import GapKind, KnowledgeGap
+from mintpilot.core.mission import AskingSettings
+from mintpilot.core.ports import Ask, Fly, QueryObjective, QuerySituation, Strategy
+from mintpilot.core.query import Answer, Reply
+from mintpilot.mission.mind import Mind, Thinking, Thought, learn, think
+from mintpilot.reasoning.belief import prior_belief
+
+_BUDGET = 8
+_ENDURANCE_S = 120.0
+
+
+def check_strategy(make: Callable[[], Strategy]) -> None:
+    """Plays small missions against every truth: questions about what is open only, an end, and no unsafe plan.
+
+    Args:
+        make: makes a fresh strategy; called more than once.
+
+    Raises:
+        ConformanceError: it breaks the contract of `mintpilot.core.ports.Strategy`.
+    """
+    settings = replace(sample_world().mission.asking, max_questions=_BUDGET)
+    gaps = _think(Mind(map=sample_world().map, belief=prior_belief(())), make(), settings).findings.gaps
+    asked = [list(_play(make(), truth, settings)) for truth in _truths(gaps)]
+    again = list(_play(make(), next(_truths(gaps)), settings))
+    rule = f"asked {asked[0]} and then {again} under the same truth; the same seed must give the same questions"
+    require(asked[0] == again, make(), rule)
+    _check_silence(make(), settings)
+    _check_doubt(make(), settings)
+    first = _think(Mind(map=sample_world().map, belief=prior_belief(())), make(), replace(settings, max_questions=0))
+    require(isinstance(first.decision, Fly), make(), "it asks though the budget is 0 questions; it must fly, or stay")
+
+
+def check_objective(make: Callable[[], QueryObjective]) -> None:
+    """One number for each cut, the same each time, and nothing for a cut that tells nothing of the plan.
+
+    Args:
+        make: makes a fresh objective; called more than once.
+
+    Raises:
+        ConformanceError: it breaks the contract of `mintpilot.core.ports.QueryObjective`.
+    """
+    probability = np.array([0.25, 0.25, 0.2, 0.15, 0.1, 0.05])
+    class_of = np.array([0, 0, 1, 1, 2, 2])
+    cuts = np.array([[1, 1, 0, 0, 0, 0], [1, 0, 1, 0, 1, 0], [0, 0, 1, 1, 0, 0], [1, 1, 1, 1, 1, 1], [0] * 6], bool)
+    regret = np.where(class_of[None, :] == np.arange(3)[:, None], 0.0, 20.0)
+    situation = QuerySituation(
+        probability=probability, class_of=class_of, regret_s=regret, yes=cuts, settings=AskingSettings()
+    )
+    objective = make()
+    scores = objective.scores(situation)
+    rule = f"scores of shape {scores.shape} for {len(cuts)} cuts; one number for each it must be"
+    require(scores.shape == (len(cuts),), objective, rule)
+    require(bool(np.isfinite(scores).all()), objective, f"scores {scores.tolist()} are not all finite")
+    again = make().scores(situation)
+    require(
+        np.array_equal(scores, again), objective, f"a fresh one gives {again.tolist()} instead of {scores.tolist()}"
+    )
+    for index, what in ((3, "yes"), (4, "no")):
+        rule = f"a cut that is always answered {what} scores {scores[index]:g}; what tells nothing scores 0 or less"
+        require(scores[index] <= 1e-9, objective, rule)
+    require(float(scores[0]) > 0, objective, f"the cut that settles a plan scores {scores[0]:g}; above 0 it must be")
+    settled = QuerySituation(
+        probability=np.array([0.5, 0.5]),
+        class_of=np.array([0, 0]),
+        regret_s=np.zeros((1, 2)),
+        yes=np.array([[True, False]]),
+        settings=AskingSettings(),
+    )
+    left = float(make().scores(settled)[0])
+    require(left <= 1e-9, objective, f"one plan is left, yet a cut still scores {left:g}; 0 or less it must be")
+
+
+def _truths(gaps: tuple[KnowledgeGap, ...]) -> Iterator[Mapping[str, str]]:
+    for values in itertools.product(*(gap.values for gap in gaps)):
+        yield dict(zip((gap.id for gap in gaps), values, strict=True))
+
+
+def _play(strategy: Strategy, truth: Mapping[str, str], settings: AskingSettings) -> Iterator[str]:
+    """The questions of one mission under that truth, up to the decision to fly."""
+    mind = Mind(map=sample_world().map, belief=prior_belief(()))
+    for asked in itertools.count():
+        thought = _think(mind, strategy, settings)
+        if isinstance(thought.decision, Fly):
+            _check_flight(thought, thought.decision, strategy)
+            return
+        require(asked < _BUDGET, strategy, f"it asks on after {asked} questions, the whole budget")
+        mind = _answered(thought, thought.decision, strategy, truth, settings)
+        yield thought.decision.scored.query.id
+
+
+def _answered(
+    thought: Thought, ask: Ask, strategy: Strategy, truth: Mapping[str, str], settings: AskingSettings
+) -> Mind:
+    query = ask.scored.query
+    open_gaps = {gap.id for gap in thought.findings.gaps}
+    closed = sorted(set(query.gap_ids) - open_gaps)
+    require(not closed, strategy, f"it asks about {closed}, which are no open gaps ({sorted(open_gaps)})")
+    repeated = query.id in {earlier.id for earlier, _ in thought.mind.asked}
+    require(not repeated, strategy, f"it asks '{query.id}' again, though the answer is known")
+    reply = Reply.YES if query.holds(truth) else Reply.NO
+    return learn(thought.mind, query, Answer(reply=reply, latency_s=0.0), settings).mind
+
+
+def _check_flight(thought: Thought, fly: Fly, strategy: Strategy) -> None:
+    if fly.plan is None or fly.unsafe:
+        return
+    kinds = {gap.id: gap.kind for gap in thought.findings.gaps}
+    entered = sorted(gap for gap in fly.plan.enters if kinds.get(gap) is GapKind.OBSTACLE)
+    require(not entered, strategy, f"it flies into {entered}, not known to be passable, without saying `unsafe`")
+
+
+def _check_silence(strategy: Strategy, settings: AskingSettings) -> None:
+    mind = Mind(map=sample_world().map, belief=prior_belief(()), silent=True)
+    decision = _think(mind, strategy, settings).decision
+    require(isinstance(decision, Fly), strategy, "it asks though nobody answers; after a time-out it must fly, or stay")
+
+
+def _check_doubt(strategy: Strategy, settings: AskingSettings) -> None:
+    """Nobody knows anything: each cut may be put once, and the asking must end."""
+    mind = Mind(map=sample_world().map, belief=prior_belief(()))
+    for _ in range(2 * _BUDGET):
+        decision = _think(mind, strategy, settings).decision
+        if isinstance(decision, Fly):
+            return
+        query = decision.scored.query
+        again = query.id in mind.withdrawn
+        require(not again, strategy, f"it asks '{query.id}' again, which was answered 'I do not know'")
+        mind = learn(mind, query, Answer(reply=Reply.UNSURE, latency_s=0.0), settings).mind
+
+
+def _think(mind: Mind, strategy: Strategy, settings: AskingSettings) -> Thought:
+    world = sample_world()
+    parts = Thinking(
+        mission=replace(world.mission, asking=settings),
+        task=world.task,
+        planner=load("planner", "grid")(),
+        strategy=strategy,
+        metric=load("metric", settings.impact_metric)(),
+        objective=load("objective", settings.objective)(),
+    )
+    return think(mind, parts, start_m=world.mission.start_m, endurance_s=_ENDURANCE_S)

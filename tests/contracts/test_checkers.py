@@ -1,0 +1,163 @@
+"""A plug-in that breaks its contract is found out, and told what it broke."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from mintpilot.assembly.registry import load
+from mintpilot.conformance import (
+    check_metric,
+    check_objective,
+    check_operator,
+    check_perception,
+    check_planner,
+    check_recorder,
+    check_strategy,
+    check_vehicle,
+)
+from mintpilot.conformance.sample import sample_world
+from mintpilot.core.errors import ConformanceError
+from mintpilot.core.geometry import Box
+from mintpilot.core.observation import Detection
+from mintpilot.core.ports import Ask, Fly
+from mintpilot.core.query import Answer, Reply
+from mintpilot.elicitation.objectives import InformationGain
+from mintpilot.planning.task_planner import GridPlanner
+from mintpilot.reasoning.metrics import FrechetMetric
+from mintpilot.simulation.kinematic import KinematicSimulator
+from mintpilot.strategies.exhaustive import ExhaustiveStrategy
+from mintpilot.strategies.mint import MintStrategy
+from mintpilot.strategies.passive import RiskyStrategy
+
+
+class OneWay:
+    def divergence(self, a_m, b_m):
+        return FrechetMetric().divergence(a_m, b_m) * (1 + a_m[-1, 1])
+
+
+class CountsPoints:
+    def divergence(self, a_m, b_m):
+        return float(abs(len(a_m) - len(b_m)) + np.abs(a_m[0] - b_m[0]).sum() + np.abs(a_m[1:2] - b_m[1:2]).sum())
+
+
+@pytest.mark.parametrize(("metric", "said"), [(OneWay, "symmetric"), (CountsPoints, "way-points added")])
+def test_a_metric(metric, said):
+    with pytest.raises(ConformanceError, match=said):
+        check_metric(metric)
+
+
+class Constant(InformationGain):
+    def scores(self, situation):
+        return np.ones(len(situation.yes))
+
+
+class Short(InformationGain):
+    def scores(self, situation):
+        return super().scores(situation)[:1]
+
+
+@pytest.mark.parametrize(("objective", "said"), [(Constant, "always answered yes"), (Short, "one number for each")])
+def test_an_objective(objective, said):
+    with pytest.raises(ConformanceError, match=said):
+        check_objective(objective)
+
+
+class Keen(MintStrategy):
+    """Asks the best question over and over."""
+
+    def decide(self, situation):
+        decision = super().decide(replace(situation, asked=(), withdrawn=frozenset(), silent=False))
+        return decision if isinstance(decision, Ask) else super().decide(situation)
+
+
+class Reckless(RiskyStrategy):
+    def decide(self, situation):
+        decision = super().decide(situation)
+        return replace(decision, unsafe=False) if isinstance(decision, Fly) else decision
+
+
+class Pushy(ExhaustiveStrategy):
+    def decide(self, situation):
+        return super().decide(replace(situation, silent=False))
+
+
+@pytest.mark.parametrize(
+    ("strategy", "said"),
+    [(Keen, "nobody answers|do not know"), (Reckless, "without saying `unsafe`"), (Pushy, "nobody")],
+)
+def test_a_strategy(strategy, said):
+    with pytest.raises(ConformanceError, match=said):
+        check_strategy(strategy)
+
+
+class Blind(GridPlanner):
+    """Takes every region for free space."""
+
+    def open(self, problem):
+        regions = tuple(replace(r, cells=r.cells[:0]) for r in problem.map.regions)
+        return super().open(replace(problem, map=replace(problem.map, regions=regions)))
+
+
+def test_a_planner():
+    with pytest.raises(ConformanceError, match="leads through 'cloud'"):
+        check_planner(Blind)
+
+
+class Rude:
+    def tell(self, text):
+        pass
+
+    def ask(self, question, patience_s):
+        return Answer(reply=Reply.YES, latency_s=float("nan"))
+
+
+def test_an_operator():
+    with pytest.raises(ConformanceError, match="latency_s"):
+        check_operator(Rude)
+
+
+class Dreamer:
+    def detect(self, frame, index):
+        return (Detection(label="box", score=2.0, box_m=Box(lo_m=(0, 0, 0), hi_m=(1, 1, 1)), frame_index=index),)
+
+
+class Careless:
+    def detect(self, frame, index):
+        if not np.nan_to_num(frame.depth_m).any():
+            return ()
+        return (Detection(label="box", score=0.5, box_m=Box(lo_m=(0, 0, 0), hi_m=(1, 1, 1)), pixels=(0, 0, 999, 9)),)
+
+
+@pytest.mark.parametrize(("perception", "said"), [(Dreamer, "without usable depth"), (Careless, "says frame -1")])
+def test_a_perception(perception, said):
+    with pytest.raises(ConformanceError, match=said):
+        check_perception(perception)
+
+
+class Deaf(KinematicSimulator):
+    def follow(self, trajectory, watch=None):
+        return super().follow(trajectory)
+
+
+def test_a_vehicle():
+    world = sample_world()
+    with pytest.raises(ConformanceError, match="the watch was never called"):
+        check_vehicle(lambda: Deaf(world.scene, world.rules, seed=0))
+
+
+class Fussy:
+    def record(self, event):
+        if "<script>" in str(event):
+            raise ValueError("I do not like this")
+
+
+def test_a_recorder():
+    with pytest.raises(ConformanceError, match="I do not like this"):
+        check_recorder(Fussy)
+
+
+def test_ours_pass_by_name():
+    check_objective(load("objective", "information-gain"))

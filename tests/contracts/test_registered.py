@@ -1,0 +1,89 @@
+"""Everything that is registered keeps the contract of its port, and the checkers find those that do not."""
+
+from __future__ import annotations
+
+import io
+
+import numpy as np
+import pytest
+from rich.console import Console
+
+from mintpilot.assembly.registry import load, names
+from mintpilot.conformance import (
+    check_metric,
+    check_objective,
+    check_operator,
+    check_perception,
+    check_planner,
+    check_recorder,
+    check_strategy,
+    check_vehicle,
+)
+from mintpilot.conformance.sample import sample_world
+from mintpilot.interaction.scripted import ScriptedOperator
+from mintpilot.interaction.terminal import TerminalOperator
+from mintpilot.recording.in_memory import HistoryRecorder
+from mintpilot.recording.recorders import MemoryRecorder, NullRecorder, TeeRecorder
+from mintpilot.recording.run_folder import RunFolder
+from mintpilot.simulation.kinematic import KinematicSimulator
+from mintpilot.simulation.mujoco_vehicle import MujocoSimulator
+
+
+@pytest.mark.parametrize("name", names("planner"))
+def test_planners(name):
+    check_planner(load("planner", name))
+
+
+@pytest.mark.parametrize("name", names("metric"))
+def test_metrics(name):
+    check_metric(load("metric", name))
+
+
+@pytest.mark.parametrize("name", names("objective"))
+def test_objectives(name):
+    check_objective(load("objective", name))
+
+
+@pytest.mark.parametrize("name", names("strategy"))
+def test_strategies(name):
+    check_strategy(load("strategy", name))
+
+
+@pytest.mark.parametrize("name", names("perception"))
+def test_perceptions(name):
+    check_perception(load("perception", name))
+
+
+@pytest.mark.parametrize("make", [NullRecorder, MemoryRecorder, HistoryRecorder, lambda: TeeRecorder(MemoryRecorder())])
+def test_recorders(make):
+    check_recorder(make)
+
+
+def test_the_run_folder_is_a_recorder(tmp_path):
+    folders = (tmp_path / str(number) for number in range(100))
+    check_recorder(lambda: RunFolder(next(folders)))
+
+
+@pytest.mark.parametrize("talk", ["", "yes\n" * 30, "perhaps\n" * 30])
+def test_the_terminal_is_an_operator(tmp_path, talk):
+    (tmp_path / "talk").write_text(talk)
+    with (tmp_path / "talk").open() as typed:
+        check_operator(lambda: TerminalOperator(Console(file=io.StringIO()), typed), patience_s=0.2)
+
+
+@pytest.mark.parametrize("silence_rate", [0.0, 1.0])
+def test_the_script_is_an_operator(silence_rate):
+    truth = sample_world().truth
+    check_operator(lambda: ScriptedOperator(truth, rng=np.random.default_rng(1), silence_rate=silence_rate))
+
+
+def test_the_kinematic_drone_is_a_vehicle():
+    world = sample_world()
+    check_vehicle(lambda: KinematicSimulator(world.scene, world.rules, seed=0))
+
+
+@pytest.mark.sim
+def test_the_drone_of_four_rotors_is_a_vehicle():
+    pytest.importorskip("mujoco")
+    world = sample_world()
+    check_vehicle(lambda: MujocoSimulator(world.scene, world.rules, seed=0))
