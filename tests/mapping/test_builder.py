@@ -86,9 +86,8 @@ def test_free_space_is_free_and_solids_are_not() -> None:
         for solid in (BLOCK, POST):
             touched = np.all((centres + 0.099 > solid.lo_m) & (centres - 0.099 < solid.hi_m), axis=1)
             assert (free & touched).sum() <= lost * touched.sum(), f"noise {noise}"
-        clear = ~np.any(
-            [np.all((centres + 0.15 > s.lo_m) & (centres - 0.15 < s.hi_m), axis=1) for s in (BLOCK, POST)], 0
-        )
+        near = [np.all((centres + 0.15 > s.lo_m) & (centres - 0.15 < s.hi_m), axis=1) for s in (BLOCK, POST)]
+        clear = ~np.any(near, axis=0)
         inner = clear & np.all((centres > 0.45) & (centres < np.asarray(ROOM.hi_m) - 0.45), axis=1)
         assert (free & inner).sum() / inner.sum() > 0.97
 
@@ -140,7 +139,8 @@ def test_any_depth_from_anywhere_changes_only_what_rays_can_reach(
     changed = np.argwhere(made.snapshot().cells != Cell.UNKNOWN)
     if len(changed):
         ahead = (LATTICE.centres_of(changed) - np.asarray(eye)) @ world[:3, 2]
-        assert ahead.max() <= 2.0 + 0.2 and ahead.min() >= -0.2
+        assert ahead.max() <= 2.0 + 0.2
+        assert ahead.min() >= -0.2
 
 
 def test_where_the_vehicle_was_is_free() -> None:
@@ -153,11 +153,10 @@ def test_where_the_vehicle_was_is_free() -> None:
 def test_a_cloud_becomes_one_region_that_covers_all_of_it() -> None:
     cloud = Box(lo_m=(3.0, 2.0, 0.0), hi_m=(5.0, 4.0, 3.0))
     made = builder()
-    index = 0
-    for x, y, turn in itertools.product((1.0, 7.0), (1.0, 5.0), np.arange(0, 2 * math.pi, 0.8)):
+    views = itertools.product((1.0, 7.0), (1.0, 5.0), np.arange(0, 2 * math.pi, 0.8))
+    for index, (x, y, turn) in enumerate(views):
         frame, smoke = cloud_in(see(ROOM, [POST], pose((x, y, 1.5), float(turn), 0.1)), cloud, index)
         made.integrate(frame, (smoke,) if smoke else ())
-        index += 1
     map = made.snapshot()
     (region,) = map.regions
     covered = np.zeros(map.frame.size, bool)
@@ -169,7 +168,8 @@ def test_a_cloud_becomes_one_region_that_covers_all_of_it() -> None:
     beyond = np.max(np.maximum(np.asarray(cloud.lo_m) - centres[covered], centres[covered] - cloud.hi_m)[:, :2])
     assert beyond < 0.75
     assert set(map.cells.ravel()[region.cells].tolist()) == {Cell.FREE}
-    assert region.passable is Knowledge.OPEN and "smoke" in region.description
+    assert region.passable is Knowledge.OPEN
+    assert "smoke" in region.description
 
     told = map.with_region(region.id, Knowledge.YES)
     assert [(r.id, r.passable) for r in made.snapshot(told).regions] == [(region.id, Knowledge.YES)]
@@ -233,7 +233,7 @@ def test_a_door_becomes_a_room_to_look_into() -> None:
         made.integrate(frame, (leaf,))
     map = made.snapshot()
     (room,) = map.rooms
-    assert room.viewpoint_m[0] == pytest.approx(6.75, abs=0.5) and room.viewpoint_m[1] == pytest.approx(3.0, abs=0.5)
+    assert room.viewpoint_m[:2] == pytest.approx((6.75, 3.0), abs=0.5)
     assert state_at(map, room.viewpoint_m) == [Cell.FREE]
     assert room.description == "the closed room with the brown door on the east side"
     told = map.with_room(room.id, occupied=Knowledge.NO, searched=True)

@@ -34,7 +34,7 @@ class Clouds:
         self._views: list[tuple[Floats, tuple[int, int, int, int, int], float]] = []
 
     def add(self, detections: tuple[Detection, ...]) -> NDArray[np.uint8]:
-        """Counts the smoke of one frame and returns where it is: (nz, ny, nx) uint8, one voxel wider than the points."""
+        """Counts the smoke of one frame; returns where it is, (nz, ny, nx) uint8, one voxel wider than the points."""
         mask = np.zeros(self._frame.shape, np.uint8)
         for detection in detections:
             if detection.label != "smoke" or detection.points_m is None or not len(detection.points_m):

@@ -15,6 +15,8 @@ class PerceptionSettings:
     """Added standard deviation per square metre of distance."""
     floor_m: float = 0.0
     """Height of the floor in the world frame."""
+    furthest_m: float = 25.0
+    """Depth from here on is no depth: no sensor of this kind measures it."""
     reach_m: float = 9.0
     """Things further away are not named."""
     tall_m: float = 1.35

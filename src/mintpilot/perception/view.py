@@ -39,7 +39,7 @@ class View:
 def look_at(frame: Frame, settings: PerceptionSettings) -> View:
     """Back-projects a frame and measures its colours."""
     depth = np.nan_to_num(frame.depth_m, nan=0.0, posinf=0.0, neginf=0.0).astype(np.float32)
-    valid: Bools = depth > 0.05
+    valid: Bools = (depth > 0.05) & (depth < settings.furthest_m)
     depth = np.where(valid, depth, np.float32(0))
     lens = frame.camera
     x = ((np.arange(lens.width, dtype=np.float32) + 0.5 - lens.cx) / lens.fx)[None, :] * depth
