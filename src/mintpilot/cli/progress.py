@@ -105,13 +105,20 @@ def told(event: Event) -> tuple[str, str]:
     if isinstance(event, MissionStarted):
         return f"Mission '{event.mission.name}': {event.mission.instruction}", "looking around"
     if isinstance(event, MapUpdated):
-        found = f"{len(event.map.objects)} objects, {len(event.map.regions)} regions, {len(event.map.rooms)} rooms"
+        known = event.map
+        found = ", ".join(
+            _count(len(things), noun)
+            for things, noun in ((known.objects, "object"), (known.regions, "region"), (known.rooms, "room"))
+        )
         return f"Map ({event.why}): {found}.", "thinking"
     if isinstance(event, Deliberated):
         if event.chosen is None:
-            return f"Thought {event.seconds:.2f} s about {len(event.gaps)} knowledge gaps: nothing to ask.", ""
+            return (
+                f"Thought {event.seconds:.2f} s about {_count(len(event.gaps), 'knowledge gap')}: nothing to ask.",
+                "",
+            )
         worth = f"the best question is worth {event.chosen.gain_bits:.2f} bits"
-        return f"Thought {event.seconds:.2f} s about {len(event.gaps)} knowledge gaps: {worth}.", ""
+        return f"Thought {event.seconds:.2f} s about {_count(len(event.gaps), 'knowledge gap')}: {worth}.", ""
     if isinstance(event, Asked):
         return f"Asked: {event.question.text} Answer: {event.answer.reply.value}.", "thinking"
     if isinstance(event, PlanChosen):
@@ -125,3 +132,7 @@ def told(event: Event) -> tuple[str, str]:
     if isinstance(event, MissionEnded):
         return f"Ended: {event.verdict.outcome.value}. {event.verdict.reason}", "writing the report"
     return "", ""
+
+
+def _count(number: int, noun: str) -> str:
+    return f"{number} {noun}{'' if number == 1 else 's'}"
