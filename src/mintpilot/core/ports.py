@@ -80,8 +80,8 @@ class QuerySituation:
     class_of: Ints
     """(n,) plan class of each joint hypothesis, 0 to m - 1."""
     regret_s: Floats
-    """(m, n) seconds lost by flying the plan of class i under hypothesis j instead of the best; the price of failure
-    where it would fail. For very large trees only the likeliest classes have a row."""
+    """(p, n) seconds lost by flying plan i under hypothesis j instead of the best; the price of failure where it would
+    fail. First the plans of the classes, then other safe plans; of very large trees only the likeliest classes'."""
     yes: Bools
     """(q, n) the true answer to each candidate cut."""
     settings: AskingSettings

@@ -62,6 +62,13 @@ def leaves_of(node: Node) -> Iterator[Node]:
         yield from leaves_of(child)
 
 
+def nodes_of(node: Node) -> Iterator[Node]:
+    """A node and all under it, parents first."""
+    yield node
+    for child in node.children:
+        yield from nodes_of(child)
+
+
 def class_probabilities(mint: Mint) -> Floats:
     """Probability of each plan class (m,)."""
     return np.array([c.probability for c in mint.classes])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Collection
 
 import numpy as np
 
@@ -12,7 +12,7 @@ from mintpilot.core.mission import AskingSettings, CriticalityRule
 from mintpilot.core.plan import Plan
 from mintpilot.core.ports import ImpactMetric, PlanSpace
 from mintpilot.core.tree import GapAccount, Mint, Node
-from mintpilot.reasoning.classes import class_entropy_bits
+from mintpilot.reasoning.classes import class_entropy_bits, nodes_of
 from mintpilot.reasoning.entropy import entropy_bits
 from mintpilot.reasoning.metrics import expected_regret_s
 from mintpilot.reasoning.situation import regret_matrix
@@ -79,14 +79,8 @@ def gap_accounts(
 
 def _branching_node(root: Node, gap_id: str) -> Node | None:
     """The likeliest node that branches on that gap; the first one among equals."""
-    found = [n for n in _nodes(root) if n.branch_on == gap_id]
+    found = [n for n in nodes_of(root) if n.branch_on == gap_id]
     return max(found, key=lambda n: round(n.probability, 9), default=None)
-
-
-def _nodes(node: Node) -> Iterator[Node]:
-    yield node
-    for child in node.children:
-        yield from _nodes(child)
 
 
 def _extremes(space: PlanSpace, given: Assumptions, gap: KnowledgeGap) -> tuple[Plan | None, Plan | None]:

@@ -9,7 +9,7 @@ from mintpilot.core.geometry import Bools, Floats
 from mintpilot.core.mission import AskingSettings
 from mintpilot.core.plan import Plan
 from mintpilot.core.tree import Mint
-from mintpilot.reasoning.classes import cheapest_under, demands
+from mintpilot.reasoning.classes import cheapest_under, demands, nodes_of
 from mintpilot.reasoning.tables import mask_of
 
 MAX_CELLS = 1 << 22
@@ -30,32 +30,44 @@ def may_fail(plan: Plan, belief: Belief, floor: float) -> bool:
     )
 
 
-def regret_matrix(mint: Mint, settings: AskingSettings) -> Floats:
-    """Seconds lost by flying the plan of each class under each joint hypothesis, instead of the best one.
+def plans_of(mint: Mint) -> tuple[Plan | None, ...]:
+    """The plans that may be chosen: that of each class, in order, then the other cautious plans of the tree's nodes.
 
-    Shape (m, n): classes by the hypotheses of `Mint.support`. Where a plan would fail it loses
+    After some answers a cautious plan that was too dear may suffice: then no question between its classes is needed.
+    """
+    made: dict[str, Plan | None] = {c.plan.signature if c.plan else "": c.plan for c in mint.classes}
+    for node in nodes_of(mint.root):
+        if node.cautious is not None:
+            made.setdefault(node.cautious.signature, node.cautious)
+    return tuple(made.values())
+
+
+def regret_matrix(mint: Mint, settings: AskingSettings) -> Floats:
+    """Seconds lost by flying each plan under each joint hypothesis, instead of the best one.
+
+    Shape (rows, n): `plans_of` by the hypotheses of `Mint.support`. Where a plan would fail it loses
     ``settings.failure_price_s``; so does staying on the ground where something could have been flown.
     """
-    support = mint.support
-    rows = min(len(mint.classes), max(1, MAX_CELLS // max(1, support.size)))
+    support, plans = mint.support, plans_of(mint)
+    rows = min(len(plans), max(1, MAX_CELLS // max(1, support.size)))
     cost = np.full((rows, support.size), np.inf)
     # Measured from what no plan can undercut: a class's own plan may itself be a little dearer than the best.
     best = cheapest_under(mint).ravel()[support]
-    for number, group in enumerate(mint.classes[:rows]):
-        if group.plan is not None:
-            fine = _class_succeeds(number, group.plan, mint).ravel()[support]
-            cost[number] = np.where(fine, group.plan.cost_s, np.inf)
+    for number, plan in enumerate(plans[:rows]):
+        if plan is not None:
+            fine = _surely_succeeds(number, plan, mint).ravel()[support]
+            cost[number] = np.where(fine, plan.cost_s, np.inf)
     # Where nothing can be flown, only staying on the ground loses nothing.
     hopeless = np.isinf(best)
     lost: Floats = np.where(np.isinf(cost), settings.failure_price_s, cost - np.where(hopeless, 0.0, best))
-    for number, group in enumerate(mint.classes[:rows]):
-        if group.plan is None:
+    for number, plan in enumerate(plans[:rows]):
+        if plan is None:
             lost[number, hopeless] = 0.0
     return lost
 
 
-def _class_succeeds(number: int, plan: Plan, mint: Mint) -> Bools:
-    """Where the plan of a class surely succeeds.
+def _surely_succeeds(number: int, plan: Plan, mint: Mint) -> Bools:
+    """Where a plan of `plans_of` surely succeeds.
 
     Where it rests on something that the tree's axes do not show (an ordered value, a gap for which there was no room),
     that is under its own hypotheses only.

@@ -10,7 +10,7 @@ from mintpilot.core.ports import Ask, Decision, QueryObjective, Situation, Strat
 from mintpilot.core.tree import LeafReason, Mint, ScoredQuery, StopReason
 from mintpilot.elicitation.candidates import candidate_queries
 from mintpilot.elicitation.choose import choose
-from mintpilot.reasoning.situation import regret_matrix
+from mintpilot.reasoning.situation import plans_of, regret_matrix
 from mintpilot.reasoning.tree import TOLERANCE
 from mintpilot.strategies.confirming import confirm_or_avoid
 from mintpilot.strategies.flying import (
@@ -93,9 +93,9 @@ def _good_for_all(situation: Situation, mint: Mint) -> Plan | None:
     """The cheapest plan within delta_c of the best under all that is left (paper's rule: and within delta_d)."""
     settings = situation.settings
     worst = regret_matrix(mint, settings).max(axis=1, initial=0.0)
-    good = [mint.classes[i].plan for i in np.flatnonzero(worst <= settings.delta_c_s + TOLERANCE)]
-    plans = sorted((p for p in good if p is not None), key=lambda p: (p.cost_s, p.signature))
-    for plan in plans:
+    plans = plans_of(mint)
+    good = [plans[i] for i in np.flatnonzero(worst <= settings.delta_c_s + TOLERANCE)]
+    for plan in sorted((p for p in good if p is not None), key=lambda p: (p.cost_s, p.signature)):
         near = settings.rule is CriticalityRule.REGRET or _near_all(situation, mint, plan)
         if near and may_be_flown(situation, plan):
             return plan

@@ -14,6 +14,7 @@ from mintpilot.core.ports import QueryObjective, QuerySituation
 MAX_STATES = 8_000
 """Default bound on the posterior supports that are looked at."""
 _ROUNDING = 1e-12
+_BEHIND = 1e-6
 
 
 class Optimal(QueryObjective):
@@ -32,7 +33,7 @@ class Optimal(QueryObjective):
     def scores(self, situation: QuerySituation) -> Floats:
         """For each cut (q,), 1 / expected questions when it is asked first, itself counted; 0 for useless ones.
 
-        Exact for the best cut; for others it may be an upper bound, never above the best.
+        Exact for the best cut; for others it may be an upper bound, always below the best.
 
         Raises:
             LimitError: answers may be wrong, or more than ``max_states`` supports would be looked at.
@@ -97,7 +98,7 @@ class _Programme:
     def search(self, support: Bools) -> tuple[dict[bytes, float], float]:
         """Expected questions for each cut asked first, by its yes part, and the least of them.
 
-        For cuts that are no better than the best one the figure may be a lower bound, but is never below the best.
+        For cuts that are no better than the best one the figure may be a lower bound, but is always above the best.
         """
         yes = self.cuts & support
         count = yes.sum(axis=1)
@@ -106,7 +107,7 @@ class _Programme:
         share = yes @ self.mass / self.mass[support].sum()
         below_yes, below_no = self.bounds(yes), self.bounds(no)
         least = 1.0 + share * below_yes + (1 - share) * below_no
-        best = float("inf")
+        best, exact = float("inf"), np.zeros(len(yes), bool)
         # The lowest bound first; among equal bounds the most even cut.
         for i in np.lexsort((np.abs(share - 0.5), np.round(least, 9))):
             if least[i] >= best - _ROUNDING:
@@ -114,7 +115,9 @@ class _Programme:
             least[i] += share[i] * (self.value(yes[i]) - below_yes[i])
             if least[i] < best - _ROUNDING:
                 least[i] += (1 - share[i]) * (self.value(no[i]) - below_no[i])
-            best = min(best, float(least[i]))
+                best, exact[i] = min(best, float(least[i])), True
+        # What was not followed to its end is no better than the best, but must not look as good.
+        least = np.where(exact, least, np.maximum(least, best) + _BEHIND)
         keys = [np.packbits(row).tobytes() for row in yes]
         return dict(zip(keys, least.tolist(), strict=True)), best if len(yes) else 0.0
 
