@@ -29,7 +29,7 @@ from mintpilot.benchmark.gym_entry import register
 from mintpilot.core.errors import InfeasibleError
 from mintpilot.core.gap import GapKind, KnowledgeGap
 from mintpilot.core.plan import Plan
-from mintpilot.core.tree import Mint, Node, ScoredQuery
+from mintpilot.core.tree import LeafReason, Mint, Node, ScoredQuery
 from mintpilot.elicitation.wording import word_question
 from mintpilot.mission.mind import Mind, Thinking, Thought, learn, think
 from mintpilot.mission.schema import OperatorSpec
@@ -128,6 +128,8 @@ class ElicitationEnv(gymnasium.Env[Observation, np.int64]):
         self._operator = scripted_operator(self._world, person)
         self._questions = 0
         self._think(Mind(map=world.map, belief=prior_belief(())))
+        if self._mint.root.leaf is LeafReason.INFEASIBLE:
+            raise InfeasibleError(f"world {world.seed}: nothing can be flown, whatever the answers are; draw another one")
         self._gaps: tuple[KnowledgeGap, ...] = self._thought.findings.gaps
         self._truth = {gap.id: world.truth.value_of(gap) for gap in self._gaps}
 

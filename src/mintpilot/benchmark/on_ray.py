@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import importlib
+import os
+import platform
 from collections.abc import Iterator, Sequence
 from typing import Any
 
@@ -42,6 +44,7 @@ class RayPool:
                 if address:
                     self._ray.init(address=address, log_to_driver=False)
                 else:
+                    os.environ.setdefault("RAY_USAGE_STATS_ENABLED", "0")
                     self._ray.init(num_cpus=jobs, include_dashboard=False, log_to_driver=False)
             except (ConnectionError, OSError, RuntimeError, ValueError) as error:
                 raise DeviceError(f"no Ray cluster can be used at '{address or 'this machine'}': {error}") from error
@@ -95,9 +98,6 @@ def _split(task: WorldTask) -> list[WorldTask]:
 
 def _work(config: str, task: str) -> tuple[str, str, list[str]]:
     """On a worker: its name, what failed (empty: nothing), and the records as JSON."""
-    import os
-    import platform
-
     from mintpilot.benchmark.work import do_task
 
     experiment = Experiment.model_validate_json(config)

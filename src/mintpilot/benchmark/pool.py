@@ -71,9 +71,17 @@ class ProcessPool:
                     elif self._overdue(worker):
                         yield from self._lost(worker, TIMED_OUT)
         finally:
-            for worker in self._workers:
+            self._end()
+
+    def _end(self) -> None:
+        """Idle workers end by themselves once their pipe is closed; busy ones are not waited for."""
+        for worker in self._workers:
+            worker.pipe.close()
+            if worker.task is not None:
                 worker.process.kill()
-                worker.pipe.close()
+        for worker in self._workers:
+            worker.process.join(5.0)
+            worker.process.kill()
 
     def _start(self) -> None:
         ours, theirs = self._context.Pipe()

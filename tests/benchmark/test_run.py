@@ -1,0 +1,169 @@
+"""Experiments run for real, in worker processes."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import duckdb
+import pytest
+from tests.benchmark.small import experiment
+
+from mintpilot.benchmark.experiment import Condition
+from mintpilot.benchmark.experiments import boxes, gaps, table1
+from mintpilot.benchmark.records import TrialRecord
+from mintpilot.benchmark.runner import RunOptions, run_experiment
+from mintpilot.benchmark.store import read_config, read_records, write_parquet
+from mintpilot.benchmark.summary import cost_s, summarise
+from mintpilot.benchmark.trial import CRASHED, RAISED, TIMED_OUT
+from mintpilot.cli.main import main
+from mintpilot.core.errors import InputError, RecordError, UnknownNameError
+
+
+def quiet(*_: object) -> None:
+    pass
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A finished run of three methods in three worlds."""
+    made = tmp_path_factory.mktemp("runs") / "bench"
+    run_experiment(experiment("mint", "exhaustive", "passive-risky", trials=3), RunOptions(folder=made), quiet)
+    return made
+
+
+def plain(record: TrialRecord) -> dict[str, object]:
+    """What must be the same every time: all but the times of this machine."""
+    timed = {"stages_s", "deliberation_max_s", "survey_s", "wall_s"}
+    data = record.model_dump(exclude=timed)
+    data["asked"] = [(a.query, a.reply) for a in record.asked]
+    return data
+
+
+def test_every_method_flies_in_every_world_once(folder: Path) -> None:
+    trials, worlds = read_records(folder)
+    assert sorted((t.seed, t.method) for t in trials) == sorted(
+        (seed, method) for seed in (2, 3, 4) for method in ("mint", "exhaustive", "passive-risky")
+    )
+    assert [w.seed for w in worlds] == [2, 3, 4]
+    assert all(t.outcome != RAISED for t in trials), [t.error for t in trials]
+    mint = [t for t in trials if t.method == "mint"]
+    possible = {w.seed for w in worlds if w.possible}
+    assert possible
+    assert all(t.success for t in mint if t.seed in possible)
+    assert all(t.questions == 2 for t in trials if t.method == "exhaustive")
+
+
+def test_same_seed_same_records_whoever_else_flies(folder: Path, tmp_path: Path) -> None:
+    alone = tmp_path / "alone"
+    run_experiment(experiment("mint", trials=3), RunOptions(folder=alone, jobs=1), quiet)
+    before = [plain(t) for t in read_records(folder)[0] if t.method == "mint"]
+    assert [plain(t) for t in read_records(alone)[0]] == before
+
+
+def test_finished_trials_are_never_flown_again_and_lost_ones_are(folder: Path) -> None:
+    config = read_config(folder)
+    flown = []
+    assert run_experiment(config, RunOptions(folder=folder), lambda p, r: flown.append(r)).done == 0
+    assert not flown
+    shard = next(p for p in sorted((folder / "shards").iterdir()) if p.read_text().count('"kind":"trial"'))
+    text = shard.read_text()
+    lines = text.splitlines(keepends=True)
+    last = max(i for i, line in enumerate(lines) if '"kind":"trial"' in line)
+    shard.write_text("".join(lines[:last]) + lines[last][:40])  # the power went while this was written
+    lost = json.loads(lines[last])
+    also = sum('"kind":"trial"' in line for line in lines[last + 1 :])
+    assert also == 0
+    run_experiment(config, RunOptions(folder=folder), lambda p, r: flown.append(r))
+    assert [(r.method, r.seed) for r in flown if isinstance(r, TrialRecord)] == [(lost["method"], lost["seed"])]
+    assert len(read_records(folder)[0]) == 9
+
+
+def test_more_trials_may_be_added_but_nothing_else(folder: Path) -> None:
+    config = read_config(folder)
+    progress = run_experiment(config.model_copy(update={"trials": 4}), RunOptions(folder=folder), quiet)
+    assert (progress.before, progress.done) == (9, 3)
+    with pytest.raises(RecordError, match=r"another experiment \(it differs in seed\).*--out"):
+        run_experiment(config.model_copy(update={"seed": 5}), RunOptions(folder=folder), quiet)
+
+
+def test_parquet_says_what_the_records_say(folder: Path) -> None:
+    trials, worlds = read_records(folder)
+    made = write_parquet(folder)
+    assert [p.name for p in made] == ["trials.parquet", "worlds.parquet"]
+    found = duckdb.sql(f"SELECT method, seed, success, questions FROM '{made[0]}' ORDER BY seed, method").fetchall()
+    assert found == sorted(
+        ((t.method, t.seed, t.success, t.questions) for t in trials), key=lambda row: (row[1], row[0])
+    )
+    assert duckdb.sql(f"SELECT count(*) FROM '{made[1]}'").fetchall() == [(len(worlds),)]
+
+
+def test_summary_counts_what_the_records_hold(folder: Path) -> None:
+    config, (trials, worlds) = read_config(folder), read_records(folder)
+    summary = summarise(config, trials, worlds)
+    row = next(r for r in summary.rows if r.strategy == "exhaustive")
+    mine = [t for t in trials if t.method == "exhaustive"]
+    assert row.n == len(mine)
+    assert row.success_rate == sum(t.success for t in mine) / len(mine)
+    assert row.mean_cost_s == pytest.approx(sum(cost_s(t, config.prices) for t in mine) / len(mine))
+    assert sum(row.outcomes.values()) == row.n
+    assert summary.possible == sum(w.possible for w in worlds)
+    assert summary.least_possible_queries == pytest.approx(sum(w.least_questions or 0.0 for w in worlds) / len(worlds))
+
+
+@pytest.mark.usefixtures("bad_plugins")
+def test_plugins_that_raise_hang_or_kill_their_process_cost_their_own_trials_only(tmp_path: Path) -> None:
+    bad = experiment("raising", "hanging", "dying", "mint", trials=1, time_limit_s=2.0)
+    run_experiment(bad, RunOptions(folder=tmp_path / "bench", jobs=1), quiet)
+    found = {t.method: t for t in read_records(tmp_path / "bench")[0]}
+    assert found["raising"].outcome == RAISED
+    assert "ZeroDivisionError: no idea" in found["raising"].reason
+    assert "small.py" in found["raising"].error
+    assert found["hanging"].outcome == TIMED_OUT
+    assert found["dying"].outcome == CRASHED
+    assert "exit code 7" in found["dying"].reason
+    assert found["mint"].success
+    assert not any(found[name].success for name in ("raising", "hanging", "dying"))
+
+
+def test_answers_that_are_wrong_are_wrong_in_the_same_trials_every_time(tmp_path: Path) -> None:
+    wrong = experiment("exhaustive", trials=2, condition=Condition(answer_error=0.4, believed_error=0.0))
+    runs = []
+    for name in ("a", "b"):
+        run_experiment(wrong, RunOptions(folder=tmp_path / name, jobs=1), quiet)
+        runs.append([plain(t) for t in read_records(tmp_path / name)[0]])
+    assert runs[0] == runs[1]
+
+
+@pytest.mark.usefixtures("bad_plugins")
+def test_unknown_strategies_and_numbers_out_of_range_are_refused_before_anything_is_flown() -> None:
+    with pytest.raises(UnknownNameError, match="Did you mean 'mint-paper'"):
+        table1(trials=1, seed=0, vehicle="kinematic", strategies=["mint-papr"])
+    with pytest.raises(InputError, match="bad-plugins"):
+        table1(trials=1, seed=0, vehicle="kinematic", strategies=["missing"])
+    with pytest.raises(InputError, match="named twice"):
+        gaps(trials=1, seed=0, vehicle="kinematic", strategies=["knowno"])
+    with pytest.raises(InputError, match="--trials 0"):
+        table1(trials=0, seed=0, vehicle="kinematic")
+    with pytest.raises(InputError, match="--think 40"):
+        boxes(trials=1, seed=0, vehicle="kinematic", think_s=40)
+
+
+def test_command_prints_one_object(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    out = tmp_path / "bench"
+    words = ["bench", "table1", "--trials", "1", "--seed", "3", "--jobs", "1", "--out", str(out), "--json"]
+    assert main(words) == 0
+    shown = capsys.readouterr()
+    made = json.loads(shown.out)
+    assert "missions per minute" in shown.err
+    assert [row["strategy"] for row in made["rows"]] == [m.name for m in read_config(out).cells[0].methods]
+    row = made["rows"][0]
+    assert {"n", "success_rate", "success_ci95", "mean_queries", "mean_queries_ci95", "mean_cost_s"} <= set(row)
+    assert {"least_possible_queries", "config", "records"} <= set(made)
+    assert (out / "trials.parquet").exists()
+    assert made["config"]["versions"]["mintpilot"]
+
+
+def test_command_names_the_nearest_strategy(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["bench", "table1", "--strategy", "knowknow", "--json"]) == 2
+    assert "Did you mean 'knowno'" in json.loads(capsys.readouterr().out)["error"]["message"]
