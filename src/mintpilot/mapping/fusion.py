@@ -94,7 +94,8 @@ def fused_regions(clouds: Sequence[Cloud], draft: Draft, prior_passable: float) 
 
 def fused_rooms(tracks: Sequence[Track], draft: Draft, prior_occupied: float) -> tuple[Room, ...]:
     """One room per closed door, with the answer and the search of the previous map; rooms of old stay."""
-    doors = [t for t in tracks if t.label == "door" and (len(t.frames) >= 2 or t.score >= draft.settings.sure_door)]
+    least, sure = draft.settings.door_sightings, draft.settings.sure_door
+    doors = [t for t in tracks if t.label == "door" and (len(t.frames) >= least or t.surest >= sure)]
     old = draft.previous.rooms if draft.previous is not None else ()
     for room in old:
         draft.names.seen(room.id)

@@ -35,11 +35,13 @@ class MappingSettings:
     """An object seen once only is kept from this score on."""
     fire_margin_m: float = 0.4
     """Nobody flies nearer than this to flames that were seen."""
-    sure_door: float = 0.82
-    """A door seen once only is kept from this score on: when its one sighting was certain."""
+    door_sightings: int = 4
+    """A door is kept when it was seen in so many frames, or once for certain."""
+    sure_door: float = 0.9
+    """Score from which one sighting of a door is certain."""
     smoke_share: float = 0.4
     """A voxel belongs to a cloud's front when at least this share of the frames that tell of it show smoke there."""
-    smoke_margin_m: float = 0.3
+    smoke_margin_m: float = 0.4
     """A cloud is this much larger than its visible front: its thin edge is seen through."""
     smoke_gap_m: float = 0.8
     """Smoke points further apart than this belong to different clouds."""

@@ -13,6 +13,10 @@ from mintpilot.core.observation import Detection
 from mintpilot.mapping.settings import MappingSettings
 
 
+STRAY = 0.12
+"""A slice of a cloud with less than this share of the voxels of its thick slices does not belong to it."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Cloud:
     """One cloud as far as it is known."""
@@ -92,11 +96,10 @@ class Clouds:
     def _extent(self, cells: Ints, volume: Box, settings: MappingSettings) -> Box | None:
         if len(cells) * self._frame.resolution_m**3 < settings.least_smoke_m3:
             return None
-        centres = self._frame.centres_of(cells)
-        half = self._frame.resolution_m / 2
-        # The outermost half percent are stray returns.
-        lo = np.percentile(centres, 0.5, axis=0) - half
-        hi = np.percentile(centres, 99.5, axis=0) + half
+        spans = [_thick_span(cells[:, axis]) for axis in (2, 1, 0)]
+        origin, edge = np.asarray(self._frame.origin_m), self._frame.resolution_m
+        lo = origin + edge * np.array([first for first, _ in spans])
+        hi = origin + edge * np.array([last + 1 for _, last in spans])
         if hi[2] - lo[2] < settings.least_smoke_height_m:
             return None
         lo, hi = lo - settings.smoke_margin_m, hi + settings.smoke_margin_m
@@ -110,6 +113,13 @@ class Clouds:
     def _best_view(self, box: Box) -> tuple[int, int, int, int, int] | None:
         inside = [(area, view) for point, view, area in self._views if bool(box.contains(point)[0])]
         return max(inside)[1] if inside else None
+
+
+def _thick_span(indices: Ints) -> tuple[int, int]:
+    """First and last slice of a cloud: those with few voxels, against its thick ones, are stray returns."""
+    counts = np.bincount(indices)
+    slices = np.flatnonzero(counts >= STRAY * np.percentile(counts[counts > 0], 80))
+    return int(slices[0]), int(slices[-1])
 
 
 def cells_in(frame: GridFrame, box: Box) -> Bools:

@@ -18,6 +18,7 @@ from mintpilot.mission.eyes import CameraEyes
 from mintpilot.mission.lookout import Lookout
 from mintpilot.planning.checks import check_trajectory
 from mintpilot.planning.reach import LookAround, next_view, way_to
+from mintpilot.planning.sight import inspect
 from mintpilot.planning.trajectory import plan_trajectory
 
 TURN_RATE_RADPS = 1.6
@@ -76,6 +77,8 @@ class _Surveyor:
         self._seen_from: list[Vec3] = []
         eyes.flown(np.asarray([mission.start_m], float), TAKE_OFF_CLEAR_M)
         self.map = eyes.look(None)
+        self._look = LookAround(apart_m=settings.spacing_m / 2)
+        self._inspected = np.zeros(self.map.frame.shape, bool)
 
     def has_time(self) -> bool:
         """Whether the survey may go on."""
@@ -87,13 +90,27 @@ class _Surveyor:
         self._fly(_turn(np.asarray(state.position_m), state.yaw_rad, SWEEP_RAD), watch_way=False)
         self._seen_from.append(state.position_m)
         self.map = self._eyes.redraw(self.map)
+        look = self._look
+        inspect(
+            self.map,
+            self._inspected,
+            np.asarray(state.position_m),
+            close_m=look.close_m,
+            elevation_rad=look.elevation_rad,
+        )
 
     def go_on(self) -> bool:
         """Flies to the next place worth looking around from. False when there is none, or nothing can be flown."""
         here = self._vehicle.state().position_m
-        look = LookAround(apart_m=self._settings.spacing_m / 2)
         seen_from = np.asarray(self._seen_from)
-        path = next_view(self.map, self._limits, start_m=here, seen_from_m=seen_from, settings=look)
+        path = next_view(
+            self.map,
+            self._limits,
+            start_m=here,
+            seen_from_m=seen_from,
+            inspected=self._inspected,
+            settings=self._look,
+        )
         if path is None:
             return False
         trajectory = self._trajectory(path)

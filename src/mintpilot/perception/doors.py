@@ -57,17 +57,17 @@ def _as_door(view: View, patch: Bools, index: int, settings: PerceptionSettings)
     points = as_floats(view.points_m[patch])
     normal, thick, wide = _flatness(points)
     noise = float(np.median(view.sigma_m[patch]))
-    low, high = np.percentile(points[:, 2], (2, 98)) - settings.floor_m
+    low, high = (float(h) - settings.floor_m for h in np.percentile(points[:, 2], (2, 98)))
     pixels = pixel_box(patch)
     if not _door_high(low, high, pixels, patch.shape) or not WIDTH_M[0] <= wide <= WIDTH_M[1]:
         return None
     if thick > THICK_M + 1.5 * noise or abs(float(normal[2])) > 0.2 or np.median(view.saturation[patch]) < PAINTED:
         return None
     # A patch of goods on a shelf is brown too, but it has gaps, and no wall around it.
-    rows = patch.any(axis=1)[pixels[1] : pixels[3]].mean()
+    rows = float(np.asarray(patch.any(axis=1))[pixels[1] : pixels[3]].mean())
     if rows < 0.97 or _wall_around(view, patch, points, normal) < IN_WALL:
         return None
-    sure = np.median(view.depth_m[patch]) < SURE_M and np.median(view.saturation[patch]) > 0.6
+    sure = np.median(view.depth_m[patch]) < SURE_M and _one_paint(view, patch)
     return Detection(
         label="door",
         score=0.92 if sure else 0.7,
@@ -77,6 +77,12 @@ def _as_door(view: View, patch: Bools, index: int, settings: PerceptionSettings)
         points_m=points[:: max(1, len(points) // 400)],
         frame_index=index,
     )
+
+
+def _one_paint(view: View, patch: Bools) -> bool:
+    """Whether a patch is of one full colour, as paint is and stacked goods are not."""
+    low, high = np.percentile(view.hue[patch], (20, 80))
+    return bool(high - low < 6.0 and np.median(view.saturation[patch]) > 0.6)
 
 
 def _door_high(low: float, high: float, pixels: tuple[int, int, int, int], shape: tuple[int, ...]) -> bool:

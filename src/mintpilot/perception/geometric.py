@@ -18,6 +18,8 @@ from mintpilot.perception.view import View, as_floats, look_at
 
 FLAME_HUES = 9.0
 """Degrees of hue, at least, from the tenth to the ninetieth percentile of flames."""
+EMBERS_M = 0.9
+"""What lies this near to flames is what burns."""
 LEAST_SIDE = 16
 """Smaller pictures show nothing."""
 
@@ -45,7 +47,7 @@ class GeometricPerception(Perception):
         found += find_doors(view, hazy, index, self._settings)
         for patch in standing_patches(view, hazy | burning, self._settings):
             thing = name_patch(view, patch, index, self._settings)
-            if thing is not None:
+            if thing is not None and not any(_beside(thing, fire) for fire in fires):
                 found.append(thing)
         return tuple(found)
 
@@ -80,3 +82,9 @@ def _flickers(view: View, patch: Bools) -> bool:
     """Flames go from red to yellow within one patch; a painted thing in the light keeps its hue."""
     low, high = np.percentile(view.hue[patch], (10, 90))
     return bool(high - low > FLAME_HUES)
+
+
+def _beside(thing: Detection, fire: Detection) -> bool:
+    """Whether a thing is embers or char: at the foot of flames."""
+    a, b = thing.position_m, fire.position_m
+    return float(np.hypot(a[0] - b[0], a[1] - b[1])) < EMBERS_M

@@ -27,10 +27,10 @@ class PerceptionSettings:
     """Boxes are not wider than this."""
     least_pixels: int = 40
     """Smaller patches are noise."""
-    rough: float = 1.3
+    rough: float = 1.0
     """Depth with this mean deviation from its surroundings, in standard deviations of the sensor (surfaces have about
     0.6), comes from inside a cloud …"""
-    perhaps_rough: float = 1.05
+    perhaps_rough: float = 0.78
     """… and from this one on it does so when it hangs together with such depth …"""
     flat_contrast: float = 4.5
     """… where also the picture's contrast, in grey levels of 255, is at most this."""

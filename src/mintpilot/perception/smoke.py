@@ -19,6 +19,8 @@ _LEAST_FLOOR = 800
 """Fewer pixels of floor do not tell the sensor's noise."""
 _USUAL = 0.6
 """Median deviation of a return from its neighbours' mean, in standard deviations, as the settings have them."""
+_STEP_M = 0.4
+"""Higher steps of the depth from pixel to pixel, besides the sensor's noise, are outlines."""
 _THIN = 7
 """Every n-th point of a cloud is enough for the map."""
 
@@ -30,10 +32,8 @@ def smoke_mask(view: View, settings: PerceptionSettings) -> Bools:
     """
     depth, valid = view.depth_m, view.valid
     off = np.minimum(np.abs(depth - mean_around(depth, valid, 3)) / view.sigma_m, 12.0).astype(np.float32)
-    rough = mean_around(off, valid, 9) / _surface_roughness(view, off, settings)
-    grey = view.frame.rgb.astype(np.float32).mean(axis=-1)
-    mean = uniform_filter(grey, 7)
-    contrast = np.sqrt(np.maximum(uniform_filter(grey * grey, 7) - mean * mean, 0))
+    rough = mean_around(off, valid & ~_outlines(view), 9) / _surface_roughness(view, off, settings)
+    contrast = _contrast(view)
     soft = (contrast <= settings.flat_contrast) & (view.saturation < 0.75)
     weak = (rough >= settings.perhaps_rough) & (contrast <= 2 * settings.flat_contrast) & (view.saturation < 0.75)
     # Opening with a square is separable, and so much quicker than many small steps.
@@ -43,6 +43,25 @@ def smoke_mask(view: View, settings: PerceptionSettings) -> Bools:
     seeds[0] = 0
     grown = (seeds >= settings.least_smoke_pixels / 3)[labels]
     return np.asarray(maximum_filter(grown, 7) & (contrast <= 2 * settings.flat_contrast), bool)
+
+
+def _outlines(view: View) -> Bools:
+    """Pixels at a step of the depth that is too high for a cloud: the outlines of things are rough, but no smoke."""
+    depth, step = np.where(view.valid, view.depth_m, np.float32(np.nan)), _STEP_M + 6.0 * view.sigma_m
+    edges = np.zeros(depth.shape, bool)
+    edges[:, 1:] |= np.abs(np.diff(depth, axis=1)) > step[:, 1:]
+    edges[1:, :] |= np.abs(np.diff(depth, axis=0)) > step[1:, :]
+    return np.asarray(maximum_filter(edges, 3), bool)
+
+
+def _contrast(view: View) -> Singles:
+    """Standard deviation of the strongest colour channel around each pixel, grey levels."""
+    strongest = np.zeros(view.valid.shape, np.float32)
+    for channel in range(3):
+        levels = view.frame.rgb[..., channel].astype(np.float32)
+        mean = uniform_filter(levels, 7)
+        np.maximum(strongest, uniform_filter(levels * levels, 7) - mean * mean, out=strongest)
+    return np.asarray(np.sqrt(strongest), np.float32)
 
 
 def _surface_roughness(view: View, off: Singles, settings: PerceptionSettings) -> float:

@@ -14,6 +14,8 @@ from mintpilot.perception.view import View, as_floats
 
 PERSON_LENGTH_M = (0.9, 2.4)
 PERSON_HEIGHT_M = 0.55
+THIN_M = 0.2
+"""Nobody is narrower than this."""
 BODY_COLOURS = 0.12
 """A person shows at least two colours, each with this share of the pixels."""
 
@@ -27,7 +29,7 @@ def name_patch(view: View, patch: Bools, index: int, settings: PerceptionSetting
     top = box.hi_m[2] - settings.floor_m
     if box.lo_m[2] - settings.floor_m > 0.35 or top < 0.12 or top > settings.tallest_object_m:
         return None
-    if _is_person(view, patch, points, top):
+    if pixels[1] >= 2 and _is_person(view, patch, points, top):
         return Detection(
             label="person",
             score=0.6 if cut else 0.9,
@@ -63,7 +65,8 @@ def _is_person(view: View, patch: Bools, points: Floats, top_m: float) -> bool:
     level = points[:, :2] - points[:, :2].mean(axis=0)
     _, axes = np.linalg.eigh(level.T @ level)
     ends = np.percentile(level @ axes[:, 1], (1, 99))
-    if not PERSON_LENGTH_M[0] <= float(ends[1] - ends[0]) <= PERSON_LENGTH_M[1]:
+    across = np.percentile(level @ axes[:, 0], (2, 98))
+    if not PERSON_LENGTH_M[0] <= float(ends[1] - ends[0]) <= PERSON_LENGTH_M[1] or across[1] - across[0] < THIN_M:
         return False
     seen = patch & view.valid
     words, counts = np.unique(colour_words(view.hue[seen], view.saturation[seen], view.value[seen]), return_counts=True)

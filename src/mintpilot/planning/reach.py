@@ -1,6 +1,6 @@
 """Where to look from next: for surveys of a world that is only partly known.
 
-Next-best-view exploration: places that can be reached through known free space are weighed by how much unknown space
+Next-best-view exploration: places that can be reached through known free space are weighed by how much that is new
 could be seen from them, and by how far away they are.
 """
 
@@ -16,7 +16,7 @@ from mintpilot.core.plan import VehicleLimits
 from mintpilot.core.semantic_map import SemanticMap
 from mintpilot.planning.flyable import known_flyable
 from mintpilot.planning.grid_search import distance_field, shortest_path
-from mintpilot.planning.sight import visible_unknown_m3
+from mintpilot.planning.sight import news_m3
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -25,10 +25,12 @@ class LookAround:
 
     reach_m: float = 5.0
     """Unknown space this near counts."""
+    close_m: float = 4.5
+    """Surfaces count until they were looked at from this near."""
     elevation_rad: tuple[float, float] = (-0.65, 0.3)
     """Lowest and highest angle that the camera sees, against the horizon."""
     least_gain_m3: float = 4.0
-    """Places that show less unknown space are not worth going to."""
+    """Places that show less that is new are not worth going to."""
     places: int = 160
     """How many places are weighed at a time."""
     fading_m: float = 8.0
@@ -40,7 +42,13 @@ class LookAround:
 
 
 def next_view(
-    map: SemanticMap, limits: VehicleLimits, *, start_m: Vec3, seen_from_m: Floats, settings: LookAround
+    map: SemanticMap,
+    limits: VehicleLimits,
+    *,
+    start_m: Vec3,
+    seen_from_m: Floats,
+    inspected: Bools,
+    settings: LookAround,
 ) -> Floats | None:
     """The way to the best place to look around from.
 
@@ -49,6 +57,7 @@ def next_view(
         limits: size of the vehicle.
         start_m: where the vehicle is, metres; it may be up to half a metre from flyable space.
         seen_from_m: places (n, 3) where it has looked around, metres.
+        inspected: surface cells (nz, ny, nx) that were looked at from near.
         settings: how places are weighed.
 
     Returns:
@@ -69,7 +78,14 @@ def next_view(
     chosen = chosen[:: max(1, len(chosen) // settings.places)]
     if not len(chosen):
         return None
-    gain_m3 = visible_unknown_m3(map, centres[chosen], reach_m=settings.reach_m, elevation_rad=settings.elevation_rad)
+    gain_m3 = news_m3(
+        map,
+        inspected,
+        centres[chosen],
+        reach_m=settings.reach_m,
+        close_m=settings.close_m,
+        elevation_rad=settings.elevation_rad,
+    )
     way_m = way_cells[tuple(cells[chosen].T)] * map.frame.resolution_m
     worth = np.where(gain_m3 >= settings.least_gain_m3, gain_m3 * np.exp(-way_m / settings.fading_m), 0.0)
     if not worth.any():
