@@ -89,7 +89,7 @@ class MapBuilder:
             (settings.min_range_m, settings.near_m, settings.max_range_m),
             (settings.hit, settings.far_hit, settings.miss, settings.clamp),
         )
-        self._clouds.contradict(self._stamp >= 2 * self._tick)
+        self._clouds.contradict(self._stamp == 2 * self._tick)
 
     def mark_flown(self, points_m: ArrayLike, radius_m: float) -> None:
         """Takes the space around places (n, 3), metres, where the vehicle truly was as free, whatever depth says.
@@ -139,7 +139,7 @@ class MapBuilder:
             if thing.label == "fire":  # flames return hardly any depth, yet nobody flies through them
                 cells[cells_in(self._frame, self._blaze(thing.box_m)) & self._inside] = Cell.OCCUPIED
         cells[self._flown & self._inside] = Cell.FREE
-        clouds = self._clouds.clouds(self._volume, self._settings)
+        clouds = self._clouds.clouds(self._solid, self._volume, self._settings)
         cells[self._clouds.front_of(clouds, self._solid) & (cells == Cell.OCCUPIED)] = Cell.UNKNOWN
         regions = fused_regions(clouds, draft, self._priors[0])
         flat = cells.reshape(-1)

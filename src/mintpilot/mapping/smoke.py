@@ -12,7 +12,6 @@ from mintpilot.core.geometry import Bools, Box, Floats, GridFrame, Ints
 from mintpilot.core.observation import Detection
 from mintpilot.mapping.settings import MappingSettings
 
-
 STRAY = 0.12
 """A slice of a cloud with less than this share of the voxels of its thick slices does not belong to it."""
 
@@ -34,7 +33,7 @@ class Clouds:
         self.seen: NDArray[np.int32] = np.zeros(frame.shape, np.int32)
         """(nz, ny, nx) number of frames that showed smoke in a voxel."""
         self.against: NDArray[np.int32] = np.zeros(frame.shape, np.int32)
-        """(nz, ny, nx) number of frames that looked through a voxel, or saw something solid in it."""
+        """(nz, ny, nx) number of frames that looked through a voxel."""
         self._views: list[tuple[Floats, tuple[int, int, int, int, int], float]] = []
 
     def add(self, detections: tuple[Detection, ...]) -> NDArray[np.uint8]:
@@ -56,7 +55,7 @@ class Clouds:
         return np.asarray(ndimage.maximum_filter(mask, size=3), np.uint8)
 
     def contradict(self, clear: Bools) -> None:
-        """Counts the voxels (nz, ny, nx) of which one frame says that they hold no smoke."""
+        """Counts the voxels (nz, ny, nx) that one frame looked through."""
         self.against += clear
 
     def front_of(self, clouds: list[Cloud], solid: NDArray[np.int32]) -> Bools:
@@ -74,14 +73,20 @@ class Clouds:
         front &= (solid < 2) | (near_smoke >= 0.4 * solid)
         return front
 
-    def clouds(self, volume: Box, settings: MappingSettings) -> list[Cloud]:
+    def clouds(self, solid: NDArray[np.int32], volume: Box, settings: MappingSettings) -> list[Cloud]:
         """The clouds known so far, from west to east.
 
         Each is the upright box around its visible front, with a margin for the thin edge that the sensor looks
         through, drawn to the floor and to the roof where it comes near them. A box, because the inside of a cloud
-        is never seen: whatever lies between two fronts belongs to it.
+        is never seen: whatever lies between two fronts belongs to it. A solid return from far away does not speak
+        against smoke, since a cloud looks solid from there.
+
+        Args:
+            solid: (nz, ny, nx) number of frames in which a ray from near ended in a voxel.
+            volume: the hall.
+            settings: thresholds and the margin.
         """
-        mask = (self.seen >= 2) & (self.seen >= settings.smoke_share * (self.seen + self.against))
+        mask = (self.seen >= 2) & (self.seen >= settings.smoke_share * (self.seen + self.against + solid))
         if not mask.any():
             return []
         reach = 2 * max(1, round(settings.smoke_gap_m / self._frame.resolution_m / 2)) + 1

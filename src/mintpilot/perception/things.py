@@ -16,6 +16,8 @@ PERSON_LENGTH_M = (0.9, 2.4)
 PERSON_HEIGHT_M = 0.55
 THIN_M = 0.2
 """Nobody is narrower than this."""
+LEAST_FLOOR = 800
+"""Fewer pixels of floor tell nothing of the light."""
 BODY_COLOURS = 0.12
 """A person shows at least two colours, each with this share of the pixels."""
 
@@ -43,7 +45,9 @@ def name_patch(view: View, patch: Bools, index: int, settings: PerceptionSetting
     whole = _completed(box, points, np.asarray(view.frame.world_from_camera[:2, 3], float), settings)
     longest = max(whole.size_m)
     flagged = patch & view.valid
-    colour = colour_word(view.hue[flagged], view.saturation[flagged], view.value[flagged])
+    colour = colour_word(
+        view.hue[flagged], view.saturation[flagged], view.value[flagged], floor_value=_floor_value(view, settings)
+    )
     shape = shape_word(view, patch)
     words = [("colour", colour), ("size", size_word(longest)), *([("shape", shape)] if shape else [])]
     distance = float(np.median(view.depth_m[flagged]))
@@ -56,6 +60,12 @@ def name_patch(view: View, patch: Bools, index: int, settings: PerceptionSetting
         points_m=points[::9],
         frame_index=index,
     )
+
+
+def _floor_value(view: View, settings: PerceptionSettings) -> float:
+    """Median value of the floor, infinite where little of it is in view: tells a dim hall from dark paint."""
+    floor = view.valid & (np.abs(view.points_m[..., 2] - settings.floor_m) < 0.03 + 1.5 * view.sigma_m)
+    return float(np.median(view.value[floor])) if int(floor.sum()) >= LEAST_FLOOR else np.inf
 
 
 def _is_person(view: View, patch: Bools, points: Floats, top_m: float) -> bool:
