@@ -7,6 +7,7 @@ from pathlib import Path
 ENTRY_POINTS = """[mintpilot.strategy]
 raising = tests.benchmark.small:Raising
 hanging = tests.benchmark.small:Hanging
+stubborn = tests.benchmark.small:Stubborn
 dying = tests.benchmark.small:Dying
 missing = tests.benchmark.small:Nowhere
 """

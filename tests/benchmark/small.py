@@ -5,8 +5,10 @@ from __future__ import annotations
 import os
 import time
 
-from mintpilot.benchmark.experiment import Cell, Condition, Experiment
-from mintpilot.benchmark.methods import Method, method_of
+from mintpilot.benchmark.experiment import Cell, Condition, Experiment, tasks_of
+from mintpilot.benchmark.methods import method_of
+from mintpilot.benchmark.records import Record
+from mintpilot.benchmark.work import do_task
 from mintpilot.core.ports import Decision, Situation, Strategy
 
 
@@ -17,8 +19,9 @@ def experiment(*names: str, trials: int = 2, condition: Condition | None = None,
     return made.model_copy(update=changes)
 
 
-def with_methods(base: Experiment, *methods: Method) -> Experiment:
-    return base.model_copy(update={"cells": (base.cells[0].model_copy(update={"methods": methods}),)})
+def here(made: Experiment) -> list[Record]:
+    """The records of an experiment, made in this process."""
+    return [record for task in tasks_of(made, frozenset()) for record in do_task(made, task, lambda _method: None)]
 
 
 class Raising(Strategy):
@@ -27,13 +30,24 @@ class Raising(Strategy):
 
 
 class Hanging(Strategy):
-    """Hangs, and forgives every error that would wake it."""
+    """Hangs, and forgives every error."""
 
     def decide(self, situation: Situation) -> Decision:
         while True:
             try:
                 time.sleep(10)
             except Exception:
+                continue
+
+
+class Stubborn(Strategy):
+    """Hangs, and forgives everything that would wake it."""
+
+    def decide(self, situation: Situation) -> Decision:
+        while True:
+            try:
+                time.sleep(10)
+            except BaseException:
                 continue
 
 

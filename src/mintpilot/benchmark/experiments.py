@@ -67,7 +67,9 @@ def table1(
         UnknownNameError: one of the strategies is not known.
         InputError: a number is out of range, or a strategy is named twice.
     """
-    cell = Cell(scenario="fire-warehouse", methods=_methods((*TABLE1, *strategies)))
+    # The yardstick is about the number of questions: in physics it would only repeat what the fast worlds tell.
+    compared = TABLE1 if vehicle == "kinematic" else tuple(name for name in TABLE1 if name != "optimal")
+    cell = Cell(scenario="fire-warehouse", methods=_methods((*compared, *strategies)))
     return _experiment("table1", (cell,), trials, seed, vehicle, time_limit_s=time_limit_s)
 
 
