@@ -102,7 +102,7 @@ def _from_scene(file: MissionFile, scene: Scene, seed: int) -> World:
 def _assembled(file: MissionFile, mission: Mission, scene: Scene, rules: FlightRules, seed: int) -> World:
     return World(
         mission=mission,
-        task=task_of(file) or parse_instruction(mission.instruction),
+        task=task_of(file) or parse_instruction(mission.instruction, home_m=mission.start_m),
         scene=scene,
         rules=rules,
         truth=SceneTruth(scene),
@@ -118,7 +118,7 @@ def _from_map(file: MissionFile, world: MapWorld, base: Path, seed: int) -> Worl
     start = place_of(world.start_m, world.height_m)
     truths = truths_of(file)
     mission = mission_of(file, start_m=start, volume=map_.frame.box)
-    task = task_of(file, layer_m=world.height_m) or parse_instruction(mission.instruction)
+    task = task_of(file, layer_m=world.height_m) or parse_instruction(mission.instruction, home_m=mission.start_m)
     wanted = wanted_of(map_, task, truths, start)
     scene = scene_of_map(
         map_,

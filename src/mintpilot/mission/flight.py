@@ -18,6 +18,7 @@ from mintpilot.core.task import Action
 from mintpilot.core.trajectory import FlightEnd, Trajectory, VehicleState
 from mintpilot.mission.eyes import Eyes
 from mintpilot.mission.lookout import Lookout
+from mintpilot.mission.retreat import is_stranded, way_back
 from mintpilot.planning.checks import check_path, check_trajectory
 from mintpilot.planning.trajectory import plan_trajectory
 
@@ -57,6 +58,18 @@ class Pilot:
     watch_map: bool = True
     """False where the map is given and nothing can be seen."""
     _news: str = field(default="", init=False)
+    _track: list[Floats] = field(default_factory=list, init=False)
+
+    def get_out(self) -> None:
+        """Goes back the way it came when something uncertain was found all around the drone."""
+        state = self.vehicle.state()
+        if not self._track or not is_stranded(self.map, self.limits, state):
+            return
+        trajectory = way_back(self.map, self.limits, state, np.vstack(self._track))
+        if trajectory is not None:
+            self.recorder.record(Noticed(kind="retreat", text="The drone went back the way it came."))
+            log = self.vehicle.follow(trajectory)
+            self.recorder.record(LegFlown(phase="retreat", stop_id="", trajectory=trajectory, log=log))
 
     def fly(self, plan: Plan, *, phase: str = "mission", pretend_passable: frozenset[str] = frozenset()) -> Progress:
         """Flies the legs of a plan in order.
@@ -83,6 +96,7 @@ class Pilot:
             log = self.vehicle.follow(trajectory, watch)
             self.recorder.record(LegFlown(phase=phase, stop_id=leg.stop.id, trajectory=trajectory, log=log))
             self.eyes.flown(log.position_m, self.limits.radius_m)
+            self._track.append(log.position_m[::10])
             if log.end is FlightEnd.FAILED:
                 return Progress(end=End.FAILED, map=self.map, finished=finished, reason=log.reason)
             if log.end is FlightEnd.INTERRUPTED:

@@ -99,6 +99,7 @@ def _think_and_fly(crew: Crew, mind: Mind) -> Verdict:
         mind = replace(mind, map=progress.map, finished=mind.finished | progress.finished)
         if progress.end is not End.NEWS:
             return ended(progress, crew.judge)
+        pilot.get_out()
     return stay_or_return(pilot, thinking.planner, crew.operator, home, why)
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import time
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from mintpilot.core.errors import InfeasibleError
@@ -26,7 +28,16 @@ class Preview:
     """False when unlikely or very many histories of answers were cut off: the mean is then a lower bound."""
 
 
-def preview(mind: Mind, parts: Thinking, *, start_m: Vec3, endurance_s: float, max_deliberations: int = 200) -> Preview:
+def preview(
+    mind: Mind,
+    parts: Thinking,
+    *,
+    start_m: Vec3,
+    endurance_s: float,
+    max_deliberations: int = 200,
+    patience_s: float = 20.0,
+    clock: Callable[[], float] = time.perf_counter,
+) -> Preview:
     """Thinks once, and then through every history of answers.
 
     Args:
@@ -35,16 +46,19 @@ def preview(mind: Mind, parts: Thinking, *, start_m: Vec3, endurance_s: float, m
         start_m: where the drone is, metres.
         endurance_s: flight time that a plan may use, seconds.
         max_deliberations: bound on the work.
+        patience_s: no further history of answers is begun after so many seconds.
+        clock: tells them.
 
     Raises:
         InfeasibleError: nothing can be flown, whatever the answers are.
     """
+    begun_s = clock()
     left = [max_deliberations]
     complete = [True]
 
     def expected(here: Mind, weight: float, thought: Thought | None = None) -> float:
         if thought is None:
-            if left[0] <= 0 or weight < NEGLIGIBLE:
+            if left[0] <= 0 or weight < NEGLIGIBLE or clock() - begun_s > patience_s:
                 complete[0] = False
                 return 0.0
             left[0] -= 1

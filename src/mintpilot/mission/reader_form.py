@@ -42,6 +42,7 @@ def show(value: object) -> str:
         return ".nan"
     text = value if isinstance(value, str) else json.dumps(value, ensure_ascii=False, default=str)
     text = text if len(text) <= 60 else text[:57] + "…"
+    text = "".join(c if c.isprintable() else repr(c)[1:-1] for c in text)  # what steers a terminal is spelt out
     return f"'{text}'" if isinstance(value, str) else text
 
 

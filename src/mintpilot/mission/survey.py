@@ -16,6 +16,7 @@ from mintpilot.core.semantic_map import SemanticMap
 from mintpilot.core.trajectory import FlightEnd, Trajectory, VehicleState
 from mintpilot.mission.eyes import CameraEyes
 from mintpilot.mission.lookout import Lookout
+from mintpilot.mission.retreat import is_stranded, way_back
 from mintpilot.planning.checks import check_trajectory
 from mintpilot.planning.reach import LookAround, next_view, way_to
 from mintpilot.planning.sight import inspect
@@ -75,6 +76,7 @@ class _Surveyor:
         self._recorder = recorder
         self._begun_s = vehicle.state().time_s
         self._seen_from: list[Vec3] = []
+        self._track: list[Floats] = []
         eyes.flown(np.asarray([mission.start_m], float), TAKE_OFF_CLEAR_M)
         self.map = eyes.look(None)
         self._look = LookAround(apart_m=settings.spacing_m / 2)
@@ -101,6 +103,7 @@ class _Surveyor:
 
     def go_on(self) -> bool:
         """Flies to the next place worth looking around from. False when there is none, or nothing can be flown."""
+        self._get_out()
         here = self._vehicle.state().position_m
         seen_from = np.asarray(self._seen_from)
         path = next_view(
@@ -123,6 +126,7 @@ class _Surveyor:
     def go_to(self, goal_m: Vec3) -> None:
         """Flies to a place, as often as news on the way stop the drone."""
         for _ in range(MAX_HOPS):
+            self._get_out()
             here = self._vehicle.state().position_m
             path = way_to(self.map, self._limits, start_m=here, goal_m=goal_m)
             trajectory = None if path is None else self._trajectory(path)
@@ -130,6 +134,17 @@ class _Surveyor:
                 return
             if np.linalg.norm(np.asarray(self._vehicle.state().position_m) - goal_m) < ARRIVED_M:
                 return
+
+    def _get_out(self) -> None:
+        """Goes back the way it came when something uncertain was found all around it."""
+        state = self._vehicle.state()
+        if not is_stranded(self.map, self._limits, state):
+            return
+        track = np.vstack(self._track) if self._track else np.zeros((0, 3))
+        trajectory = way_back(self.map, self._limits, state, track)
+        if trajectory is not None:
+            self._recorder.record(Noticed(kind="retreat", text="The drone went back the way it came."))
+            self._fly(trajectory, watch_way=False)
 
     def _trajectory(self, path: Floats) -> Trajectory | None:
         yaw = self._vehicle.state().yaw_rad
@@ -158,6 +173,7 @@ class _Surveyor:
         log = self._vehicle.follow(trajectory, watch)
         self._recorder.record(LegFlown(phase="survey", stop_id="", trajectory=trajectory, log=log))
         self._eyes.flown(log.position_m, self._limits.radius_m)
+        self._track.append(log.position_m[::10])
         return log.end is not FlightEnd.FAILED
 
 
