@@ -5,9 +5,11 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from mintpilot.core.errors import LimitError
 from mintpilot.core.geometry import Box, Vec3
 from mintpilot.core.observation import Attribute
 from mintpilot.core.semantic_map import Cell, Knowledge
@@ -116,3 +118,9 @@ def test_what_comes_later_is_not_there_yet() -> None:
     assert before.objects == ()
     assert [o.id for o in after.objects] == ["late"]
     assert (after.cells == Cell.OCCUPIED).sum() > (before.cells == Cell.OCCUPIED).sum()
+
+
+def test_a_hall_of_too_many_voxels_is_refused() -> None:
+    vast = Scene(name="vast", volume=Box(lo_m=(0, 0, 0), hi_m=(8000, 8000, 300)), start_m=(1.0, 1.0, 1.0))
+    with pytest.raises(LimitError, match="make the volume smaller"):
+        map_of_scene(vast, 0.2)

@@ -11,10 +11,12 @@ from typing import TYPE_CHECKING
 from rich.console import Console
 
 from mintpilot.cli.exits import ExitCode
+from mintpilot.cli.interrupts import stop_if_wanted
 from mintpilot.core.errors import InputError
 
 if TYPE_CHECKING:
     from mintpilot.cli.progress import Narrator
+    from mintpilot.core.events import Event
     from mintpilot.core.ports import Operator
 
 
@@ -45,6 +47,11 @@ def fly(path: Path, options: FlightOptions) -> ExitCode:
     errors = Console(stderr=True)
     out = options.out or new_run_path(Path("runs"), mission.name, datetime.now(UTC))
     with Narrator(errors) as narrator:
+
+        def tell(event: Event) -> None:
+            narrator(event)
+            stop_if_wanted(event)
+
         try:
             record = run_mission(
                 path,
@@ -53,7 +60,7 @@ def fly(path: Path, options: FlightOptions) -> ExitCode:
                 strategy=options.strategy,
                 seed=options.seed,
                 out=out,
-                progress=narrator,
+                progress=tell,
             )
         except KeyboardInterrupt:
             narrator.rest()

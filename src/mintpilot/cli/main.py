@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import signal
 import sys
 from collections.abc import Sequence
 from importlib.metadata import version
 from pathlib import Path
-from types import FrameType
 from typing import Annotated, Literal, TypeAlias
 
 from cyclopts import App, CycloptsError, Parameter
@@ -15,6 +13,7 @@ from rich.console import Console
 
 from mintpilot.cli.bench import bench
 from mintpilot.cli.exits import EPILOGUE, ExitCode, fail, guarded
+from mintpilot.cli.interrupts import listen
 
 app = App(
     name="mintpilot",
@@ -203,7 +202,7 @@ app.command(bench)
 def main(arguments: Sequence[str] | None = None) -> int:
     """Runs the program with these words (default: those of the command line); returns its exit code."""
     words = list(sys.argv[1:] if arguments is None else arguments)
-    signal.signal(signal.SIGTERM, _terminated)
+    listen()
     try:
         code = app(words, exit_on_error=False, print_error=False, error_console=Console(stderr=True))
     except CycloptsError as error:
@@ -211,8 +210,3 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         return ExitCode.INTERRUPTED
     return int(code or 0)
-
-
-def _terminated(_number: int, _frame: FrameType | None) -> None:
-    """Being told to end is treated as Ctrl-C: the run folder is closed first."""
-    raise KeyboardInterrupt

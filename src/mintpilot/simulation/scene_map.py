@@ -17,6 +17,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from mintpilot.core.errors import LimitError
 from mintpilot.core.geometry import Bools, Box, Floats, GridFrame
 from mintpilot.core.observation import Attribute, RegionKind
 from mintpilot.core.semantic_map import Cell, MapObject, Region, Room, SemanticMap
@@ -37,14 +38,24 @@ def size_word(extent_m: Box) -> str:
     return "small" if longest < 0.4 else "medium" if longest < 0.65 else "large"
 
 
+MAX_CELLS = 20_000_000
+"""Voxels of a map at most: as many as are read of a given one."""
+
+
 def map_of_scene(scene: Scene, resolution_m: float, *, time_s: float = 0.0) -> SemanticMap:
     """The map of a perfect survey at ``time_s`` seconds of mission flight; see the module for what it knows.
 
     Raises:
         MapError: the resolution is not above 0.
+        LimitError: the map would have more than `MAX_CELLS` voxels.
     """
     lo, size = scene.volume.lo_m, scene.volume.size_m
     nx, ny, nz = (max(1, int(np.ceil(edge / resolution_m - _SLACK_M))) for edge in size)
+    if nx * ny * nz > MAX_CELLS:
+        raise LimitError(
+            f"a volume of {size[0]:g} x {size[1]:g} x {size[2]:g} m in voxels of {resolution_m:g} m has "
+            f"{nx * ny * nz} voxels, more than the {MAX_CELLS} that are held; make the volume smaller or them larger"
+        )
     frame = GridFrame(origin_m=lo, resolution_m=resolution_m, shape=(nz, ny, nx))
     cells = np.full(frame.shape, Cell.FREE, np.uint8)
     cells[0] = Cell.OCCUPIED
