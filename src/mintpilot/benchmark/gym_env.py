@@ -129,7 +129,9 @@ class ElicitationEnv(gymnasium.Env[Observation, np.int64]):
         self._questions = 0
         self._think(Mind(map=world.map, belief=prior_belief(())))
         if self._mint.root.leaf is LeafReason.INFEASIBLE:
-            raise InfeasibleError(f"world {world.seed}: nothing can be flown, whatever the answers are; draw another one")
+            raise InfeasibleError(
+                f"world {world.seed}: nothing can be flown, whatever the answers are; draw another one"
+            )
         self._gaps: tuple[KnowledgeGap, ...] = self._thought.findings.gaps
         self._truth = {gap.id: world.truth.value_of(gap) for gap in self._gaps}
 

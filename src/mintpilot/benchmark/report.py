@@ -5,7 +5,7 @@ from __future__ import annotations
 import base64
 import gzip
 import json
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
@@ -18,11 +18,12 @@ from mintpilot.benchmark.experiment import Experiment
 from mintpilot.benchmark.plots import plots_of
 from mintpilot.benchmark.records import TrialRecord, WorldRecord
 from mintpilot.benchmark.summary import Row, Summary, latency_s, summarise
-from mintpilot.benchmark.tables import HEADER, PAPER, between, percent, row_words
+from mintpilot.benchmark.tables import HEADER, PAPER, between, mean_words, percent, row_words
 from mintpilot.core.errors import RecordError
 
 Folder: TypeAlias = tuple[Experiment, Sequence[TrialRecord], Sequence[WorldRecord], str]
 """Configuration, records, and the folder's name as the user knows it."""
+SIDE_BY_SIDE = 4
 STAGES = ("perception", "deliberation", "wording", "answer", "planning", "total")
 
 
@@ -38,6 +39,8 @@ class _Section:
     title: str
     facts: tuple[str, ...]
     tables: tuple[_Table, ...]
+    folded: tuple[_Table, ...]
+    """Shown on demand only."""
     plots: tuple[tuple[str, Markup], ...]
     config: str
 
@@ -68,7 +71,9 @@ def write_report(folders: Sequence[Folder], out: Path) -> None:
 def _section(folder: Folder, number: int) -> _Section:
     experiment, trials, worlds, name = folder
     summary = summarise(experiment, trials, worlds)
-    tables = [_results(experiment, summary, cell.name) for cell in experiment.cells]
+    single = [_results(experiment, summary, cell.name) for cell in experiment.cells]
+    tables = single if len(single) == 1 else _matrices(experiment, summary)
+    folded = [] if len(single) == 1 else single
     if experiment.vehicle == "mujoco":
         tables.append(_latencies(summary.rows))
     if summary.gaps:
@@ -77,6 +82,7 @@ def _section(folder: Folder, number: int) -> _Section:
         title=f"{experiment.name}, {experiment.vehicle}: {name}",
         facts=_facts(experiment, summary),
         tables=tuple(table for table in tables if table.rows),
+        folded=tuple(table for table in folded if table.rows),
         plots=tuple((title, Markup(svg)) for title, svg in plots_of(experiment, trials, summary, number)),
         config=experiment.model_dump_json(indent=1),
     )
@@ -91,6 +97,29 @@ def _results(experiment: Experiment, summary: Summary, cell: str) -> _Table:
             rows.append((*row_words(row), ends, *((paper.get(row.strategy, ""),) if paper else ())))
     header = (*HEADER, "endings", *(("paper",) if paper else ()))
     return _Table(title=cell or "Methods", header=header, rows=tuple(rows))
+
+
+def _matrices(experiment: Experiment, summary: Summary) -> list[_Table]:
+    """Method by setting, one table for each figure, a few settings beside each other."""
+    words: dict[str, Callable[[Row], str]] = {
+        "Success where possible": lambda row: (
+            "-"
+            if row.success_rate_possible is None
+            else f"{percent(row.success_rate_possible)} {between(row.success_possible_ci95)}"
+        ),
+        "Questions, mean": lambda row: mean_words(row.mean_queries, row.mean_queries_ci95, 2),
+        "Cost, mean, s": lambda row: mean_words(row.mean_cost_s, row.mean_cost_ci95, 0),
+    }
+    found = {(row.strategy, row.cell): row for row in summary.rows}
+    methods = tuple(dict.fromkeys(row.strategy for row in summary.rows))
+    cells = [cell.name for cell in experiment.cells]
+    tables = []
+    for start in range(0, len(cells), SIDE_BY_SIDE):
+        some = cells[start : start + SIDE_BY_SIDE]
+        for title, say in words.items():
+            rows = tuple((m, *(say(found[m, c]) if (m, c) in found else "-" for c in some)) for m in methods)
+            tables.append(_Table(title=title, header=("method", *some), rows=rows))
+    return tables
 
 
 def _latencies(rows: Sequence[Row]) -> _Table:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from rich import box
 from rich.console import Console
 from rich.table import Table
 
@@ -25,7 +26,9 @@ def print_summary(experiment: Experiment, summary: Summary, console: Console) ->
             continue
         timed = experiment.vehicle == "mujoco"
         header = (*HEADER, *(("latency, median",) if timed else ()), *(("paper",) if paper else ()))
-        table = Table(*header, title=cell.name or experiment.name, title_justify="left", title_style="bold")
+        table = Table(title=cell.name or experiment.name, title_justify="left", title_style="bold", box=box.SIMPLE)
+        for name in header:
+            table.add_column(name, no_wrap=name == "method", overflow="fold")
         for row in rows:
             seconds = row.latency_s.get("total")
             late = ((f"{seconds:.1f} s" if seconds is not None else "-"),) if timed else ()
@@ -42,8 +45,8 @@ def row_words(row: Row) -> tuple[str, ...]:
         str(row.n),
         f"{percent(row.success_rate)} {between(row.success_ci95)}",
         f"{percent(possible)} {between(row.success_possible_ci95)}" if possible is not None else "-",
-        _mean(row.mean_queries, row.mean_queries_ci95, 2),
-        f"{_mean(row.mean_cost_s, row.mean_cost_ci95, 0)} s",
+        mean_words(row.mean_queries, row.mean_queries_ci95, 2),
+        f"{mean_words(row.mean_cost_s, row.mean_cost_ci95, 0)} s",
         f"{row.mean_flight_s:.0f} s",
     )
 
@@ -58,7 +61,8 @@ def between(interval: tuple[float, float]) -> str:
     return f"[{100 * interval[0]:.1f}, {100 * interval[1]:.1f}]"
 
 
-def _mean(value: float, interval: tuple[float, float] | None, digits: int) -> str:
+def mean_words(value: float, interval: tuple[float, float] | None, digits: int) -> str:
+    """A mean with its interval, if there is one, in words."""
     if interval is None:
         return f"{value:.{digits}f}"
     return f"{value:.{digits}f} [{interval[0]:.{digits}f}, {interval[1]:.{digits}f}]"
