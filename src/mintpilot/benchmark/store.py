@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable
+from contextlib import suppress
 from pathlib import Path
 from typing import IO
 
@@ -51,7 +52,9 @@ class RecordStore:
 
     def __exit__(self, *_: object) -> None:
         for file in self._files.values():
-            file.close()
+            # What could not be written was told when it was tried; closing tries once more.
+            with suppress(OSError):
+                file.close()
 
     def append(self, worker: str, record: Record) -> None:
         """Adds one record; it is on its way to the disk when this returns.
