@@ -57,5 +57,3 @@ def hall(
             **vehicle,
         }
     )
-
-

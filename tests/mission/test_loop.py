@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from tests.mission.scenes import hall, wall
 
 from mintpilot.assembly.api import run_mission
 from mintpilot.assembly.crews import Choices, crew_for
@@ -16,7 +17,6 @@ from mintpilot.interaction.scripted import FunctionOperator, RecordedOperator
 from mintpilot.mission.loop import fly_mission
 from mintpilot.mission.schema import MissionFile
 from mintpilot.recording.recorders import MemoryRecorder
-from tests.mission.scenes import hall, wall
 
 
 def fly(file: MissionFile, operator: object = "scripted", strategy: str = "mint"):
@@ -40,7 +40,7 @@ def test_asks_about_the_smoke_and_flies_accordingly(toxic: bool) -> None:
 
 
 def test_silence_means_the_cautious_way() -> None:
-    record, path, events = fly(hall(toxic=False), RecordedOperator([]))
+    record, path, _ = fly(hall(toxic=False), RecordedOperator([]))
     assert record.outcome is Outcome.SUCCESS
     assert not enters_cloud(path)
     assert record.certificate is not None

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tests.mission.scenes import hall
 
 from mintpilot.assembly.crews import Choices, crew_for
 from mintpilot.assembly.worlds import build_world
@@ -20,7 +21,6 @@ from mintpilot.core.tree import Certificate, StopReason
 from mintpilot.interaction.scripted import FunctionOperator
 from mintpilot.mission.loop import Crew, fly_mission
 from mintpilot.recording.recorders import MemoryRecorder
-from tests.mission.scenes import hall
 
 CERTIFICATE = Certificate(
     reason=StopReason.NEVER_ASKS,
@@ -49,9 +49,7 @@ class Liar(Strategy):
 def fly(strategy: Strategy | None = None, *, simulated: bool = False, answer=lambda q, p: Reply.YES, word=None):
     world = build_world(hall(toxic=True), base=None, seed=0)
     recorder = MemoryRecorder()
-    with crew_for(
-        world, Choices(vehicle="kinematic"), operator=FunctionOperator(answer), recorder=recorder
-    ) as crew:
+    with crew_for(world, Choices(vehicle="kinematic"), operator=FunctionOperator(answer), recorder=recorder) as crew:
         changed: Crew = replace(crew, simulated=simulated)
         if strategy is not None:
             changed = replace(changed, thinking=replace(crew.thinking, strategy=strategy))
@@ -80,9 +78,7 @@ def test_a_way_through_a_wall_is_refused_even_in_a_simulator() -> None:
 
 @settings(max_examples=25, deadline=None)
 @given(
-    st.lists(
-        st.tuples(st.floats(-2, 14), st.floats(-2, 10), st.floats(-1, 4)).map(np.array), min_size=1, max_size=4
-    )
+    st.lists(st.tuples(st.floats(-2, 14), st.floats(-2, 10), st.floats(-1, 4)).map(np.array), min_size=1, max_size=4)
 )
 def test_no_way_of_a_lying_strategy_enters_what_is_not_known_to_be_passable(points: list[np.ndarray]) -> None:
     verdict, path = fly(Liar(np.vstack(points)))
