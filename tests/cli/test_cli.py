@@ -268,3 +268,23 @@ def test_the_generated_pages_are_current():
     docs = ROOT / "docs"
     assert (docs / "cli.md").read_text(encoding="utf-8") == make_docs.cli_page(), "run: make docs"
     assert (docs / "mission-file.md").read_text(encoding="utf-8") == make_docs.mission_page(), "run: make docs"
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no device that is always full")
+def test_a_full_log_does_not_end_a_flight(tmp_path):
+    words = ["run", str(BUILDING), "--operator", "scripted", "--vehicle", "kinematic", "--json"]
+    with Path("/dev/full").open("w") as full:
+        done = subprocess.run(
+            [*PROGRAM, *words, "--out", str(tmp_path / "run")], stdout=subprocess.PIPE, stderr=full, text=True
+        )
+    assert done.returncode == 0
+    assert json.loads(done.stdout)["outcome"] == "success"
+
+
+def test_readers_that_go_away_do_not_end_a_flight(tmp_path):
+    words = ["run", str(BUILDING), "--operator", "scripted", "--vehicle", "kinematic", "--out", str(tmp_path / "run")]
+    with subprocess.Popen([*PROGRAM, *words], stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+        process.stdout.close()
+        process.stderr.close()
+    assert process.returncode == 0
+    assert json.loads((tmp_path / "run" / "record.json").read_text())["outcome"] == "success"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import os
 import sys
@@ -43,6 +44,7 @@ EPILOGUE = "Exit codes: " + "; ".join(
     )
 )
 ERROR_SCHEMA_VERSION = 1
+_FULL = (errno.ENOSPC, errno.EDQUOT, errno.EIO)
 
 
 def guarded(work: Callable[[], ExitCode], *, as_json: bool, debug: bool) -> ExitCode:
@@ -57,13 +59,18 @@ def guarded(work: Callable[[], ExitCode], *, as_json: bool, debug: bool) -> Exit
         return work()
     except BrokenPipeError:
         # Whoever read our output went away (a pager was closed): nothing is left to say, nor anybody to hear it.
-        sys.stdout = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115, PTH123
+        hush()
         return ExitCode.SUCCESS
     except (Exception, KeyboardInterrupt) as error:  # the last resort: a user must never meet a bare traceback
         if debug:
             traceback.print_exc()
         code, message = verdict_on(error)
         return fail(message, as_json=as_json, code=code, kind=type(error).__name__)
+
+
+def hush() -> None:
+    """Nobody reads standard output any more: what is still to come goes nowhere."""
+    sys.stdout = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115, PTH123
 
 
 def verdict_on(error: BaseException) -> tuple[ExitCode, str]:
@@ -76,6 +83,11 @@ def verdict_on(error: BaseException) -> tuple[ExitCode, str]:
         return ExitCode.FAILED_DEVICE, str(error)
     if isinstance(error, MintPilotError):
         return ExitCode.WRONG_INPUT, str(error)
+    if isinstance(error, OSError) and error.errno in _FULL:
+        return (
+            ExitCode.FAILED_DEVICE,
+            f"the output cannot be written: {error.strerror}; make room for it",
+        )
     if isinstance(error, MemoryError):
         return ExitCode.WRONG_INPUT, "not enough memory; make the map smaller or coarser"
     return (

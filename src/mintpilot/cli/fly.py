@@ -8,13 +8,13 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rich.console import Console
-
-from mintpilot.cli.exits import ExitCode
+from mintpilot.cli.exits import ExitCode, hush
 from mintpilot.cli.interrupts import stop_if_wanted
 from mintpilot.core.errors import InputError
 
 if TYPE_CHECKING:
+    from rich.console import Console
+
     from mintpilot.cli.progress import Narrator
     from mintpilot.core.events import Event
     from mintpilot.core.ports import Operator
@@ -37,14 +37,14 @@ class FlightOptions:
 def fly(path: Path, options: FlightOptions) -> ExitCode:
     """Flies the mission in that file, tells how it goes, and prints the report, or as JSON its summary."""
     from mintpilot.assembly.api import run_mission
-    from mintpilot.cli.progress import Narrator
+    from mintpilot.cli.progress import LenientConsole, Narrator
     from mintpilot.mission.reader import read_mission
     from mintpilot.recording.run_folder import new_run_path
     from mintpilot.recording.run_summary import summary
     from mintpilot.recording.terminal_report import print_report
 
     mission = read_mission(path)
-    errors = Console(stderr=True)
+    errors = LenientConsole(stderr=True)
     out = options.out or new_run_path(Path("runs"), mission.name, datetime.now(UTC))
     with Narrator(errors) as narrator:
 
@@ -67,10 +67,13 @@ def fly(path: Path, options: FlightOptions) -> ExitCode:
             if out.exists():
                 errors.print(f"Stopped. What was recorded until then is in {out}.", highlight=False, soft_wrap=True)
             raise
-    if options.as_json:
-        print(summary(record).model_dump_json())
-    else:
-        print_report(record, Console())
+    try:
+        if options.as_json:
+            print(summary(record).model_dump_json(), flush=True)
+        else:
+            print_report(record, LenientConsole())
+    except BrokenPipeError:  # the reader went away; how the mission ended still counts
+        hush()
     return ExitCode.SUCCESS if record.outcome.value == "success" else ExitCode.NOT_A_SUCCESS
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from types import TracebackType
 from typing import Self
 
@@ -23,6 +24,14 @@ from mintpilot.core.events import (
 )
 from mintpilot.core.ports import Operator
 from mintpilot.core.query import Answer, Question
+
+
+class LenientConsole(Console):
+    """Goes silent when its reader goes away, instead of ending the program: a mission may be in the air."""
+
+    def on_broken_pipe(self) -> None:
+        """Nothing more is written."""
+        self.quiet = True
 
 
 class Narrator:
@@ -79,7 +88,8 @@ class Narrator:
         self._bar.update(self._bar.task_ids[0], description=stage)
 
     def _say(self, line: str) -> None:
-        self._console.print(Text("".join(c if c.isprintable() else " " for c in line)), soft_wrap=True)
+        with suppress(OSError):  # a full disk behind a log must not end a flight
+            self._console.print(Text("".join(c if c.isprintable() else " " for c in line)), soft_wrap=True)
 
 
 class Attended(Operator):
