@@ -105,14 +105,13 @@ def trial(demo: str, seed: int, vehicle: str) -> Trial:
     )
 
 
-def section(trials: list[Trial], command: str) -> Section:
+def section(demo: str, trials: list[Trial], command: str) -> Section:
     """The table of docs/results.md."""
-    rows = [list(_row(demo, [t for t in trials if t.demo == demo])) for demo in DEMOS]
     failed = [t for t in trials if t.possible and t.outcome != "success"]
     notes = [f"{t.demo}, seed {t.seed}: {t.outcome} ({t.reason})" for t in failed]
     return Section(
-        name="10-missions",
-        title="Whole missions in MuJoCo",
+        name=f"10-missions-{demo}",
+        title=f"Whole missions: {demo}",
         command=command,
         how=(
             "Scripted operator with perfect answers, strategy `mint`, demo settings. *Possible*: a planner that is "
@@ -135,7 +134,7 @@ def section(trials: list[Trial], command: str) -> Section:
                     "frames, mean",
                     "computing, median",
                 ),
-                rows=rows,
+                rows=[list(_row(demo, trials))],
             )
         ],
         notes=notes,
@@ -173,19 +172,21 @@ def main() -> None:
     parser.add_argument("--demo", choices=DEMOS)
     parser.add_argument("--keep", action="store_true", help="write docs/results.md")
     args = parser.parse_args()
-    trials = []
     for demo in DEMOS if args.demo is None else (args.demo,):
-        for seed in range(args.first, args.first + args.seeds):
-            one = trial(demo, seed, args.vehicle)
-            trials.append(one)
-            print(
-                f"{demo} {seed}: {one.outcome}{'' if one.possible else ' (not possible)'}, {one.questions} questions, "
-                f"RMS {one.rms_m:.3f} m, thinking {one.deliberation_s:.2f} s, {one.frames} frames of "
-                f"{1000 * one.frame_s:.0f} ms, {one.wall_s:.1f} s in all. {one.reason}",
-                flush=True,
-            )
-    if args.keep:
-        keep(section(trials, f"python -m bench.missions --seeds {args.seeds} --first {args.first} --keep"))
+        trials = [_told(trial(demo, seed, args.vehicle)) for seed in range(args.first, args.first + args.seeds)]
+        if args.keep:
+            options = f"--demo {demo} --vehicle {args.vehicle} --seeds {args.seeds} --first {args.first} --keep"
+            keep(section(demo, trials, f"python -m bench.missions {options}"))
+
+
+def _told(one: Trial) -> Trial:
+    print(
+        f"{one.demo} {one.seed}: {one.outcome}{'' if one.possible else ' (not possible)'}, {one.questions} questions, "
+        f"RMS {one.rms_m:.3f} m, thinking {one.deliberation_s:.2f} s, {one.frames} frames of "
+        f"{1000 * one.frame_s:.0f} ms, {one.wall_s:.1f} s in all. {one.reason}",
+        flush=True,
+    )
+    return one
 
 
 if __name__ == "__main__":
