@@ -219,6 +219,17 @@ def test_nobody_flies_through_flames() -> None:
     assert state_at(made.snapshot(), (4.3, 3.3, 0.5), (4.8, 3.3, 0.5), (5.6, 3.3, 0.9)) == [2, 2, 1]
 
 
+def test_flames_in_smoke_stay_solid() -> None:
+    cloud = Box(lo_m=(3.0, 2.0, 0.0), hi_m=(5.0, 4.0, 3.0))
+    flames = Box(lo_m=(2.8, 2.8, 0.2), hi_m=(3.2, 3.2, 1.0))
+    made = builder()
+    for index in range(4):
+        frame, smoke = cloud_in(see(ROOM, [], pose((0.5, 3.0, 1.5), 0.0, 0.1)), cloud, index)
+        assert smoke is not None
+        made.integrate(frame, (smoke, Detection(label="fire", score=0.9, box_m=flames, frame_index=index)))
+    assert state_at(made.snapshot(), (3.0, 3.0, 0.5), (3.4, 3.0, 0.5)) == [Cell.OCCUPIED, Cell.OCCUPIED]
+
+
 def test_a_door_becomes_a_room_to_look_into() -> None:
     made = looked_around([])
     frame = see(ROOM, [], pose((3.0, 3.0, 1.5), 0.0))

@@ -17,7 +17,7 @@ from mintpilot.mapping.identity import Names
 from mintpilot.mapping.objects import Tracks
 from mintpilot.mapping.rays import cast_rays
 from mintpilot.mapping.settings import MappingSettings
-from mintpilot.mapping.smoke import Clouds, cells_in
+from mintpilot.mapping.smoke import Clouds, Evidence, cells_in
 
 
 class MapBuilder:
@@ -135,12 +135,15 @@ class MapBuilder:
             hull_m=self._limits.radius_m + self._limits.margin_m,
         )
         objects = fused_objects(self._tracks.all, draft)
+        blazing = np.zeros(self._frame.shape, bool)
         for thing in objects:
-            if thing.label == "fire":  # flames return hardly any depth, yet nobody flies through them
-                cells[cells_in(self._frame, self._blaze(thing.box_m)) & self._inside] = Cell.OCCUPIED
-        cells[self._flown & self._inside] = Cell.FREE
-        clouds = self._clouds.clouds(self._solid, self._volume, self._settings)
+            if thing.label == "fire":
+                blazing |= cells_in(self._frame, self._blaze(thing.box_m)) & self._inside
+        evidence = Evidence(solid=self._solid, free=cells == Cell.FREE, blazing=blazing)
+        clouds = self._clouds.clouds(evidence, self._volume, self._settings)
         cells[self._clouds.front_of(clouds, self._solid) & (cells == Cell.OCCUPIED)] = Cell.UNKNOWN
+        cells[blazing] = Cell.OCCUPIED  # flames return hardly any depth, yet nobody flies through them
+        cells[self._flown & self._inside] = Cell.FREE
         regions = fused_regions(clouds, draft, self._priors[0])
         flat = cells.reshape(-1)
         for region in regions:

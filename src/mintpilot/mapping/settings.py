@@ -45,6 +45,8 @@ class MappingSettings:
     """A cloud is this much larger than its visible front: its thin edge is seen through."""
     smoke_gap_m: float = 0.8
     """Smoke points further apart than this belong to different clouds."""
+    widest_inside_m: float = 2.5
+    """Two fronts no further apart than this may be the sides of one cloud."""
     least_smoke_m3: float = 0.4
     """A cloud of which less than this volume was seen is noise."""
     least_smoke_height_m: float = 1.0

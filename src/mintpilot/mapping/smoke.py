@@ -16,6 +16,22 @@ STRAY = 0.12
 """A slice of a cloud with less than this share of the voxels of its thick slices does not belong to it."""
 
 
+FREE_BETWEEN = 0.25
+"""With no more than this share of known free space between them, two near clouds are one."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Evidence:
+    """What is known of the voxels besides smoke; each array is (nz, ny, nx)."""
+
+    solid: NDArray[np.int32]
+    """In how many frames a ray from near ended there."""
+    free: Bools
+    """Known free."""
+    blazing: Bools
+    """Where flames are: their fringe is as soft as smoke, but no cloud."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Cloud:
     """One cloud as far as it is known."""
@@ -73,7 +89,7 @@ class Clouds:
         front &= (solid < 2) | (near_smoke >= 0.4 * solid)
         return front
 
-    def clouds(self, solid: NDArray[np.int32], volume: Box, settings: MappingSettings) -> list[Cloud]:
+    def clouds(self, evidence: Evidence, volume: Box, settings: MappingSettings) -> list[Cloud]:
         """The clouds known so far, from west to east.
 
         Each is the upright box around its visible front, with a margin for the thin edge that the sensor looks
@@ -82,11 +98,15 @@ class Clouds:
         against smoke, since a cloud looks solid from there.
 
         Args:
-            solid: (nz, ny, nx) number of frames in which a ray from near ended in a voxel.
+            evidence: what is known of the voxels besides smoke.
             volume: the hall.
             settings: thresholds and the margin.
         """
-        mask = (self.seen >= 2) & (self.seen >= settings.smoke_share * (self.seen + self.against + solid))
+        mask = (
+            (self.seen >= 2)
+            & ~evidence.blazing
+            & (self.seen >= settings.smoke_share * (self.seen + self.against + evidence.solid))
+        )
         if not mask.any():
             return []
         reach = 2 * max(1, round(settings.smoke_gap_m / self._frame.resolution_m / 2)) + 1
@@ -96,7 +116,7 @@ class Clouds:
             cells = np.argwhere(mask & (labels == number))
             if (box := self._extent(cells, volume, settings)) is not None:
                 clouds.append(Cloud(box_m=box, best_view=self._best_view(box)))
-        return sorted(_merged(clouds), key=lambda c: c.box_m.lo_m)
+        return sorted(_merged(clouds, self._frame, evidence.free, settings), key=lambda c: c.box_m.lo_m)
 
     def _extent(self, cells: Ints, volume: Box, settings: MappingSettings) -> Box | None:
         if len(cells) * self._frame.resolution_m**3 < settings.least_smoke_m3:
@@ -138,18 +158,29 @@ def cells_in(frame: GridFrame, box: Box) -> Bools:
     return inside
 
 
-def _merged(clouds: list[Cloud]) -> list[Cloud]:
-    """Clouds whose boxes overlap are one: a region is passable or not as a whole."""
-    result: list[Cloud] = []
-    for cloud in clouds:
-        for other in [o for o in result if _overlap(o.box_m, cloud.box_m)]:
-            result.remove(other)
-            lo = np.minimum(cloud.box_m.lo_m, other.box_m.lo_m).tolist()
-            hi = np.maximum(cloud.box_m.hi_m, other.box_m.hi_m).tolist()
-            cloud = Cloud(box_m=Box(lo_m=tuple(lo), hi_m=tuple(hi)), best_view=other.best_view or cloud.best_view)
-        result.append(cloud)
-    return result if len(result) == len(clouds) else _merged(result)
+def _merged(clouds: list[Cloud], frame: GridFrame, free: Bools, settings: MappingSettings) -> list[Cloud]:
+    """Clouds that belong together as one: a region is passable or not as a whole.
+
+    Overlapping ones do, and near ones with hardly any known free space between them: two sides of one cloud whose
+    inside nobody has seen.
+    """
+    for i, a in enumerate(clouds):
+        for b in clouds[i + 1 :]:
+            if _is_one(a.box_m, b.box_m, frame, free, settings):
+                rest = [c for c in clouds if c is not a and c is not b]
+                joint = Cloud(box_m=_around(a.box_m, b.box_m), best_view=a.best_view or b.best_view)
+                return _merged([*rest, joint], frame, free, settings)
+    return clouds
 
 
-def _overlap(a: Box, b: Box) -> bool:
-    return all(a.lo_m[i] < b.hi_m[i] and b.lo_m[i] < a.hi_m[i] for i in range(3))
+def _is_one(a: Box, b: Box, frame: GridFrame, free: Bools, settings: MappingSettings) -> bool:
+    gap = float(np.max(np.maximum(np.subtract(a.lo_m, b.hi_m), np.subtract(b.lo_m, a.hi_m))))
+    if gap < 0:
+        return True
+    between = cells_in(frame, _around(a, b)) & ~cells_in(frame, a) & ~cells_in(frame, b)
+    return gap <= settings.widest_inside_m and float(free[between].mean()) <= FREE_BETWEEN
+
+
+def _around(a: Box, b: Box) -> Box:
+    (x0, y0, z0), (x1, y1, z1) = np.minimum(a.lo_m, b.lo_m).tolist(), np.maximum(a.hi_m, b.hi_m).tolist()
+    return Box(lo_m=(x0, y0, z0), hi_m=(x1, y1, z1))
