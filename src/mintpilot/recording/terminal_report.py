@@ -44,8 +44,14 @@ def _saw(record: MissionRecord) -> RenderableType:
     for seen in record.seen:
         name = seen.state if seen.kind == "object" else seen.kind
         kinds[name] = kinds.get(name, 0) + 1
-    things = ", ".join(f"{count} {name}" for name, count in sorted(kinds.items()))
+    things = ", ".join(f"{count} {_plural(name, count)}" for name, count in sorted(kinds.items()))
     return _section("What it saw", [_plain(f"{record.frames} pictures: {things or 'nothing was found'}.")])
+
+
+def _plural(name: str, count: int) -> str:
+    if count == 1:
+        return name
+    return {"box": "boxes", "person": "people"}.get(name, name if name in ("fire", "rubble") else f"{name}s")
 
 
 def _gaps(record: MissionRecord, width: int) -> RenderableType:
@@ -92,7 +98,8 @@ def _question(question: QuestionRecord) -> Iterator[Text]:
 def _decided(record: MissionRecord) -> RenderableType:
     lines: list[Text] = []
     if record.tree is not None and record.tree.children:
-        lines.extend(Text(line) for line in tree_text(record.tree, max_nodes=15).splitlines())
+        tree = tree_text(record.tree, max_nodes=15).splitlines()
+        lines.extend(Text(line, no_wrap=True, overflow="ellipsis") for line in tree)
     if record.certificate is not None:
         lines.append(_plain(f"{STOP_WORDS[record.certificate.reason]} {record.certificate.text}"))
     return _section("How it decided", lines or [Text("It was not decided.")])
