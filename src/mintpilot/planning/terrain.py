@@ -104,8 +104,8 @@ def start_cell(frame: GridFrame, free: Bools, matter: Bools, start_m: Vec3) -> I
         if frame.contains(ray).all() and not matter[tuple(ray.T)].any():
             return np.asarray(cells[i], np.int64)
     raise InfeasibleError(
-        f"start ({start_m[0]:.2f}, {start_m[1]:.2f}, {start_m[2]:.2f}) is not in flyable space, and no flyable cell is within {SNAP_M} m straight through free "
-        "space; start from elsewhere, or reduce the vehicle's radius or margin"
+        f"start ({start_m[0]:.2f}, {start_m[1]:.2f}, {start_m[2]:.2f}) is not in flyable space, and no flyable cell is "
+        f"within {SNAP_M} m straight through free space; start from elsewhere, or reduce the vehicle's radius or margin"
     )
 
 
