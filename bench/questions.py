@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import sys
 import time
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
@@ -74,6 +75,7 @@ def measure(worlds: int) -> tuple[list[Row], int]:
             except LimitError:
                 refused += 1
                 continue
+            print(f"k = {k}: world {seed + 1} of {worlds}", file=sys.stderr, flush=True)
             for name, result in results.items():
                 found.setdefault((name, k), []).append(result)
     rows = []
@@ -134,7 +136,7 @@ def main() -> None:
     if not games:
         notes.append("Twenty questions were not played: ../shared/data/twentyq/guess_who.json is not there.")
     section = Section(
-        name="questions",
+        name="21-questions",
         title="Questions",
         command="python -m bench.questions",
         how=(
