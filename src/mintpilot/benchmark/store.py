@@ -38,9 +38,12 @@ class RecordStore:
         config = folder / CONFIG
         try:
             (folder / SHARDS).mkdir(parents=True, exist_ok=True)
+            most = experiment.trials
             if config.exists():
-                _check_same(read_config(folder), experiment, folder)
-            _write_whole(config, experiment.model_dump_json(indent=1) + "\n")
+                old = read_config(folder)
+                _check_same(old, experiment, folder)
+                most = max(most, old.trials)
+            _write_whole(config, experiment.model_copy(update={"trials": most}).model_dump_json(indent=1) + "\n")
         except OSError as error:
             raise RecordError(
                 f"cannot write to {folder}: {error.strerror}; choose another folder with --out"
