@@ -89,7 +89,10 @@ class Pilot:
             trajectory = self._prepare(leg, believed)
             self.recorder.record(Timed(stage="planning", seconds=time.perf_counter() - begun))
             if isinstance(trajectory, str):
-                return Progress(end=End.REFUSED, map=self.map, finished=finished, reason=trajectory)
+                if index:  # the map has changed since the plan was made: what was seen on the way asks for a new one
+                    self.recorder.record(Noticed(kind="news", text=trajectory))
+                end = End.NEWS if index else End.REFUSED
+                return Progress(end=end, map=self.map, finished=finished, reason=trajectory)
             rest = [x.path_m for x in plan.legs[index:]]
             watch = self._watch(rest, pretend_passable) if self.watch_map else None
             self._news = ""
