@@ -17,8 +17,9 @@ HOW = (
     "knows the truth, trajectory, flight. *Latency* runs from the instruction to the finished trajectories: one more "
     "picture perceived and drawn into the map, all deliberations, all wordings, the person's thinking (3 s for each "
     "question, stated, not waited for), the planning of all legs. The survey flight comes before the instruction and "
-    "is not in it, nor is speech. The paper's 20.7 s is from start to completion of planned trajectories on a real "
-    "drone, speech and a cloud model included, so that only the order of magnitude compares."
+    "is not in it, nor is speech. The paper's 20.7 s is from start to completion of "
+    "planned trajectories on a real drone, with speech and large models in the loop: only the order of magnitude "
+    "compares."
 )
 
 

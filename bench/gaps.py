@@ -40,6 +40,11 @@ def section(measured: Measured, command: str) -> Section:
         f"`optimal` is exact for answers believed right and up to {MOST_OPTIMAL} gaps; beyond, it passes its bound on "
         "states in some worlds and is left out."
     )
+    for row in measured.summary.rows:
+        if row.strategy == "information-gain" and row.cell in others and row.success_rate_possible is not None:
+            notes.append(
+                f"{row.cell}: `information-gain` succeeds where possible in {_success(row)} of {row.n_possible}."
+            )
     for cell in (*SWEEP, *others):
         notes += [f"{cell}: {line}" for line in failures(measured, "information-gain", cell, most=3)]
     notes += [measured.throughput] if measured.throughput else []

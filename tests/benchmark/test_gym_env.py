@@ -1,5 +1,8 @@
 from __future__ import annotations
 
+import re
+from pathlib import Path
+
 import gymnasium
 import numpy as np
 import pytest
@@ -17,6 +20,16 @@ def test_gymnasium_finds_no_fault() -> None:
     import mintpilot.benchmark.gym_env  # noqa: F401  (a checkout that is not installed anew has no entry point yet)
 
     check_env(gymnasium.make("mintpilot/Elicitation-v0", render_mode="ansi").unwrapped)
+
+
+def test_the_example_in_the_docs_runs() -> None:
+    import mintpilot.benchmark.gym_env  # noqa: F401
+
+    page = Path(__file__).parents[2] / "docs" / "benchmark.md"
+    (code,) = re.findall(r"```python\n(.*?)```", page.read_text(encoding="utf-8"), flags=re.S)
+    names: dict[str, object] = {}
+    exec(code, names)
+    assert isinstance(names["reward"], float)
 
 
 def test_asking_everything_then_committing_succeeds_at_the_price_of_the_questions() -> None:

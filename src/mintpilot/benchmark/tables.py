@@ -10,11 +10,14 @@ from mintpilot.benchmark.experiment import Experiment
 from mintpilot.benchmark.summary import Row, Summary
 
 PAPER = {
-    "table1": {"pure-llm": "77.0 %, 0.0", "exhaustive": "100.0 %, 2.0", "mint": "100.0 %, 1.4"},
+    "table1": {"pure-llm": "77 %, 0.0", "exhaustive": "100 %, 2.0", "mint": "100 %, 1.4"},
     "boxes": {"passive-conservative": "35 %", "mint": "100 %, 20.7 s"},
 }
 """What the paper states: success, mean questions; for the boxes seconds from start to completed trajectories."""
-HEADER = ("method", "n", "success", "success where possible", "questions, mean", "cost, mean", "flight, mean")
+ROOMY = 100
+"""From this many columns on a terminal shows everything."""
+LEFT_OUT = ("n", "cost, mean s", "flight, mean s")
+HEADER = ("method", "n", "success", "success where possible", "questions, mean", "cost, mean s", "flight, mean s")
 
 
 def print_summary(experiment: Experiment, summary: Summary, console: Console) -> None:
@@ -26,13 +29,18 @@ def print_summary(experiment: Experiment, summary: Summary, console: Console) ->
             continue
         timed = experiment.vehicle == "mujoco"
         header = (*HEADER, *(("latency, median",) if timed else ()), *(("paper",) if paper else ()))
-        table = Table(title=cell.name or experiment.name, title_justify="left", title_style="bold", box=box.SIMPLE)
-        for name in header:
-            table.add_column(name, no_wrap=name == "method", overflow="fold")
+        shown = [name for name in header if console.width >= ROOMY or name not in LEFT_OUT]
+        title = f"{cell.name or experiment.name}, n = {rows[0].n}"
+        table = Table(title=title, title_justify="left", title_style="bold", box=box.SIMPLE_HEAD, pad_edge=False)
+        table.padding = (0, 1, 0, 0)
+        for name in shown:
+            table.add_column(name.replace(", ", ",\n").replace(" where ", "\nwhere "), no_wrap=True)
         for row in rows:
             seconds = row.latency_s.get("total")
             late = ((f"{seconds:.1f} s" if seconds is not None else "-"),) if timed else ()
-            table.add_row(*row_words(row), *late, *((paper.get(row.strategy, ""),) if paper else ()))
+            words = (*row_words(row), *late, *((paper.get(row.strategy, ""),) if paper else ()))
+            by_name = dict(zip(header, words, strict=True))
+            table.add_row(*(by_name[name].replace(" [", "\n[").replace("%, ", "%,\n") for name in shown))
         console.print(table)
     console.print(_worlds(summary), highlight=False, soft_wrap=True)
 
@@ -46,8 +54,8 @@ def row_words(row: Row) -> tuple[str, ...]:
         f"{percent(row.success_rate)} {between(row.success_ci95)}",
         f"{percent(possible)} {between(row.success_possible_ci95)}" if possible is not None else "-",
         mean_words(row.mean_queries, row.mean_queries_ci95, 2),
-        f"{mean_words(row.mean_cost_s, row.mean_cost_ci95, 0)} s",
-        f"{row.mean_flight_s:.0f} s",
+        mean_words(row.mean_cost_s, row.mean_cost_ci95, 0),
+        f"{row.mean_flight_s:.0f}",
     )
 
 
