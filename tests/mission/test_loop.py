@@ -79,11 +79,16 @@ def test_one_yes_is_not_enough_when_answers_may_be_wrong() -> None:
     assert yes >= 2 or not enters_cloud(path)
 
 
-def test_the_number_of_questions_stays_within_the_budget() -> None:
+@pytest.mark.parametrize("error", [0.0, 0.02, 0.3])
+@pytest.mark.parametrize("budget", [0, 1, 3, 5])
+def test_the_number_of_questions_stays_within_the_budget(error: float, budget: int) -> None:
     flip = iter([Reply.YES, Reply.NO] * 50)
     operator = FunctionOperator(lambda question, patience: next(flip))
-    record, path, _ = fly(hall(asking={"answer_error": 0.3, "max_questions": 5}), operator)
-    assert len(record.questions) <= 5
+    toxic = hall(asking={"answer_error": error, "max_questions": budget, "alpha_safe": 1e-9})
+    record, path, _ = fly(toxic, operator)
+    assert len(record.questions) <= budget
+    if error == 0.0 and budget:
+        return  # answers are believed: a wrong yes is flown
     assert not enters_cloud(path)
 
 

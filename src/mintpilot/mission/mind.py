@@ -118,7 +118,7 @@ def _think(mind: Mind, parts: Thinking, *, start_m: Vec3, endurance_s: float, ho
         withdrawn=mind.withdrawn,
         asked=mind.asked,
         silent=mind.silent,
-        settings=parts.settings,
+        settings=_with_budget(parts.settings, mind),
         metric=parts.metric,
         objective=parts.objective,
     )
@@ -156,6 +156,13 @@ def _look_for_gaps(mind: Mind, parts: Thinking, start_m: Vec3, honour_wishes: bo
         honour_wishes=honour_wishes,
     )
     return findings, extend(mind.belief, findings.gaps, parts.groups)
+
+
+def _with_budget(settings: AskingSettings, mind: Mind) -> AskingSettings:
+    """The settings with the questions taken off the budget that left no trace: those whose answers contradicted."""
+    traced = len(mind.asked) + len(mind.withdrawn)
+    lost = max(0, len(mind.attempts) - traced)
+    return replace(settings, max_questions=max(0, settings.max_questions - lost)) if lost else settings
 
 
 def _wishes(mind: Mind, parts: Thinking, start_m: Vec3) -> bool:
