@@ -32,12 +32,13 @@ check: setup ## formatting, lint, types and import rules
 	@$(BIN)/mypy
 	@$(BIN)/lint-imports
 
-bench: setup ## measure the search against its yardsticks, the small ones (ARGS="--json FILE")
-	@$(BIN)/python -m bench.search --quick $(ARGS)
+bench: setup ## measure search and questions against their yardsticks, and write docs/results.md (BENCH=--quick: a taste)
+	@$(BIN)/python -m bench.search $(BENCH)
+	@$(BIN)/python -m bench.questions $(BENCH)
 
-results: setup ## measure everything that docs/results.md states, and write it; takes long
-	@$(BIN)/python -m bench.search
-	@$(BIN)/python -m bench.missions
+results: bench ## measure everything that docs/results.md states but the tables of strategies, and write it
+	@$(BIN)/python -m bench.missions --seeds 20 --keep
+	@$(BIN)/python -m bench.language
 
 table: setup ## fly Table 1, the boxes and the gaps as far as no record is there yet (hours), and write docs/results.md
 	@for part in table1 boxes gaps; do $(BIN)/python -m bench.$$part || exit 1; done
