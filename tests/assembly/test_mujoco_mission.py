@@ -9,7 +9,7 @@ from mintpilot.cli.demos import demo_mission
 from mintpilot.core.mission import Outcome
 from mintpilot.recording.record import read_record
 
-pytestmark = [pytest.mark.sim, pytest.mark.slow]
+pytestmark = [pytest.mark.sim, pytest.mark.xdist_group("mission")]
 
 
 @pytest.fixture(scope="module")

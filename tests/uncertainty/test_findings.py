@@ -8,12 +8,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mintpilot.core.errors import InputError
-from mintpilot.core.gap import ABSENT, BLOCKED, PASSABLE, PRESENT, GapKind
+from mintpilot.core.gap import ABSENT, BLOCKED, PASSABLE, PRESENT, GapKind, KnowledgeGap
 from mintpilot.core.observation import RegionKind
 from mintpilot.core.plan import VehicleLimits
 from mintpilot.core.semantic_map import Knowledge
 from mintpilot.core.task import Action, Avoidance, Reference, SubGoal, Task
 from mintpilot.uncertainty import find_gaps, frame_problem
+from mintpilot.uncertainty.findings import told_apart
 
 from .worlds import START_M, room, smoke, step, thing, world
 
@@ -243,3 +244,23 @@ def test_ids_stay_when_something_unrelated_is_added(rows: list[tuple[str, str, s
     kept = {gap.id: gap for gap in after.gaps}
     for gap in before.gaps:
         assert kept[gap.id].values == gap.values
+
+
+def test_clouds_called_alike_are_told_apart_by_where_they_are():
+    clouds = [
+        KnowledgeGap(
+            id=f"obstacle:s{i}",
+            kind=GapKind.OBSTACLE,
+            subject=f"s{i}",
+            description="the smoke",
+            values=(PASSABLE, BLOCKED),
+            prior=(0.5, 0.5),
+            position_m=place,
+        )
+        for i, place in enumerate([(5.0, 2.0, 1.0), (5.2, 2.1, 1.0), (1.0, 2.0, 1.0), (1.0, -3.0, 1.0)])
+    ]
+    words = [gap.description for gap in told_apart(clouds, (1.0, 2.0, 1.0))]
+    assert len(set(words)) == 4
+    assert words[2] == "the smoke at the drone"
+    assert words[3] == "the smoke 5 m south of the drone"
+    assert told_apart(clouds[:1], (0.0, 0.0, 0.0)) == clouds[:1]

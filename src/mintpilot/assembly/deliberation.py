@@ -87,6 +87,8 @@ class DeliberationReport(_Report):
     """The stop reason with its numbers, as a sentence; empty while a question is open."""
     plan_cost_s: float | None
     """Seconds of the flight that would be flown now; null while a question is open or nothing can be flown."""
+    left_out: list[str]
+    """What bounds on the work left out; empty when every plan is the best one."""
     seconds: float
     """How long the first deliberation took."""
 
@@ -118,6 +120,7 @@ def deliberation_report(
         stop_reason=str(fly.certificate.reason) if fly else None,
         certificate=fly.certificate.text if fly else "",
         plan_cost_s=fly.plan.cost_s if fly and fly.plan else None,
+        left_out=list(preview.first.left_out),
         seconds=seconds,
     )
 

@@ -39,6 +39,8 @@ def lines_of(report: DeliberationReport) -> Iterator[str]:
     yield ""
     yield from _decision_lines(report)
     bound = "" if report.expected_questions_complete else " or more"
+    for note in report.left_out:
+        yield f"A bound on the work was reached: {note}."
     yield f"Questions to be expected: {report.expected_questions:.2f}{bound}. Thought for {report.seconds:.2f} s."
 
 

@@ -57,6 +57,7 @@ def check_planner(make: Callable[[], Planner]) -> None:
     again = _plan(make().open(problem).optimistic(settled), planner)
     require(again.signature == hopeful.signature, planner, "equal problems give different plans")
     require(space.searches >= 0, planner, f"searches = {space.searches}: a count is not below 0")
+    require(isinstance(space.notes, tuple), planner, f"notes = {space.notes!r}: must be a tuple of sentences")
     _check_refusal(problem, planner)
 
 

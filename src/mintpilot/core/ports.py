@@ -50,6 +50,11 @@ class PlanSpace(Protocol):
         """How many searches of the map were made so far."""
         ...
 
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What a bound on the work left out so far, in plain sentences; empty when every plan is the best one."""
+        ...
+
 
 class Planner(Protocol):
     """Plans through a map. Called whenever the map, the task or the drone's place has changed."""

@@ -37,6 +37,8 @@ class Interview:
     """Deliberations that knew of gaps nobody had known of before: the figures of the accounts come from them."""
     asked_gaps: list[str] = field(default_factory=list, init=False)
     rounds: int = field(default=0, init=False)
+    bounds: list[str] = field(default_factory=list, init=False)
+    """What bounds on the work left out, each told once."""
 
     def deliberated(self, thought: Thought, seconds: float) -> None:
         """Tells the recorder of one deliberation."""
@@ -57,6 +59,10 @@ class Interview:
             )
         )
         self.rounds += 1
+        for note in thought.left_out:
+            if note not in self.bounds:
+                self.bounds.append(note)
+                self.recorder.record(Noticed(kind="bound", text=f"A bound on the work was reached: {note}."))
 
 
 def put_question(interview: Interview, mind: Mind, ask: Ask) -> tuple[Mind, Command | None]:

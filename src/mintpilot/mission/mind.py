@@ -65,6 +65,15 @@ class Thought:
     situation: Situation
     decision: Decision
 
+    @property
+    def left_out(self) -> tuple[str, ...]:
+        """What bounds on the work left out, in plain sentences: plans stay safe, but may not be the best."""
+        mint = self.decision.mint
+        notes = self.situation.space.notes
+        if mint is None or not mint.not_expanded:
+            return notes
+        return (*notes, f"{mint.not_expanded} leaves of the tree were not expanded; they get the cautious plan")
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Lesson:

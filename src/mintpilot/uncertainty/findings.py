@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections import Counter
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from mintpilot.core.errors import InputError
-from mintpilot.core.gap import KnowledgeGap
+from mintpilot.core.gap import GapKind, KnowledgeGap
 from mintpilot.core.geometry import Vec3
 from mintpilot.core.plan import PlanningProblem, Stop, VehicleLimits
 from mintpilot.core.semantic_map import Knowledge, SemanticMap
@@ -67,7 +69,7 @@ def find_gaps(
         gaps += more_gaps
         stops += more_stops
     return Findings(
-        gaps=tuple(sorted(gaps, key=lambda gap: gap.id)),
+        gaps=tuple(sorted(told_apart(gaps, start_m), key=lambda gap: gap.id)),
         stops=tuple(_on_layer(stop, map) for stop in stops),
         problems=tuple(dict.fromkeys(bound.problems)),
         wishes=tuple(sorted(r.id for r in map.regions if r.kind in wished and r.passable is Knowledge.OPEN)),
@@ -96,6 +98,35 @@ def frame_problem(
     return PlanningProblem(
         map=map, start_m=start_m, stops=findings.stops, gaps=findings.gaps, limits=limits, finished=finished
     )
+
+
+def told_apart(gaps: Sequence[KnowledgeGap], start_m: Vec3) -> list[KnowledgeGap]:
+    """The gaps, with words added to those regions and rooms that are called alike: where they are, seen from the drone.
+
+    A question must name one thing. Where even that is not enough, decimetres are.
+    """
+    said = list(gaps)
+    for digits in (0, 1):
+        counts = Counter(gap.description for gap in said)
+        alike = [g.kind is not GapKind.TARGET and counts[g.description] > 1 for g in said]
+        said = [
+            replace(was, description=f"{was.description} {_whereabouts(was.position_m, start_m, digits)}")
+            if mixed
+            else now
+            for was, now, mixed in zip(gaps, said, alike, strict=True)
+        ]
+    return said
+
+
+def _whereabouts(position_m: Vec3, start_m: Vec3, digits: int) -> str:
+    parts = []
+    for offset, forth, back in (
+        (position_m[0] - start_m[0], "east", "west"),
+        (position_m[1] - start_m[1], "north", "south"),
+    ):
+        if round(abs(offset), digits) > 0:
+            parts.append(f"{abs(offset):.{digits}f} m {forth if offset > 0 else back}")
+    return f"{' and '.join(parts)} of the drone" if parts else "at the drone"
 
 
 def _on_layer(stop: Stop, map: SemanticMap) -> Stop:
