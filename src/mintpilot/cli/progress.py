@@ -135,6 +135,8 @@ def told(event: Event) -> tuple[str, str]:
         if event.plan is None:
             return "No plan that is known to be safe.", "staying safe"
         return f"Plan: {event.plan.length_m:.1f} m, {event.plan.cost_s:.0f} s.", "flying"
+    if isinstance(event, LegFlown) and event.phase == "survey":
+        return "", "surveying"
     if isinstance(event, LegFlown):
         return f"Flown ({event.phase}): {event.stop_id}, {event.log.end.value}.", ""
     if isinstance(event, Noticed):
