@@ -1,6 +1,7 @@
 """Every file in examples/ does what it says."""
 
 import json
+import re
 import runpy
 import subprocess
 import sys
@@ -44,6 +45,16 @@ def test_the_python_example_says_what_it_would_ask(capsys):
     shown = capsys.readouterr().out
     assert "First question:" in shown
     assert "the grey smoke in the middle gate" in shown
+
+
+def test_the_example_in_the_readme_runs_as_printed(capsys, monkeypatch):
+    monkeypatch.chdir(EXAMPLES.parent)
+    blocks = re.findall(r"```python\n(.*?)```", (EXAMPLES.parent / "README.md").read_text(), re.DOTALL)
+    assert len(blocks) == 1
+    exec(compile(blocks[0], "README.md", "exec"), {})
+    shown = capsys.readouterr().out
+    assert "the grey smoke in the middle gate: Matters" in shown
+    assert "questions to be expected" in shown
 
 
 def test_the_python_example_fits_on_a_screen():

@@ -10,7 +10,7 @@ from mintpilot.core.gap import PASSABLE, Belief, CorrelationGroup, GapKind, Know
 from mintpilot.core.geometry import Vec3
 from mintpilot.core.mission import AskingSettings, Mission
 from mintpilot.core.ports import Decision, Fly, ImpactMetric, Planner, QueryObjective, Situation, Strategy
-from mintpilot.core.query import Answer, Query, Reply
+from mintpilot.core.query import Answer, Combine, Query, Reply
 from mintpilot.core.semantic_map import SemanticMap
 from mintpilot.core.task import Task
 from mintpilot.mapping.knowledge import apply_knowledge
@@ -186,7 +186,7 @@ def _asked_before(mind: Mind, query: Query) -> frozenset[str]:
 
 def _confirmed_by(query: Query, gaps: Sequence[KnowledgeGap]) -> frozenset[str]:
     """Obstacle gaps that a yes to this cut says outright to be passable: a cut about them alone, or joined by *and*."""
-    if len(query.literals) > 1 and query.combine.value != "all":
+    if len(query.literals) > 1 and query.combine is Combine.ANY:
         return frozenset()
     obstacles = {gap.id for gap in gaps if gap.kind is GapKind.OBSTACLE}
     return frozenset(x.gap for x in query.literals if x.gap in obstacles and x.values == frozenset({PASSABLE}))
