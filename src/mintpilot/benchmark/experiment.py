@@ -79,6 +79,8 @@ class Experiment(Part):
     """A trial that computes longer is recorded as failed."""
     share_plans: bool = True
     """Whether methods in the same world share plans already made: the same results sooner, but no fair timing."""
+    share_survey: bool = False
+    """Whether the first method's survey flight serves all methods in the same world (`SharedSurvey`)."""
     versions: dict[str, str] = {}
     """Of everything that decides results."""
 

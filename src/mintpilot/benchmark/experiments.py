@@ -70,7 +70,7 @@ def table1(
     # The yardstick is about the number of questions: in physics it would only repeat what the fast worlds tell.
     compared = TABLE1 if vehicle == "kinematic" else tuple(name for name in TABLE1 if name != "optimal")
     cell = Cell(scenario="fire-warehouse", methods=_methods((*compared, *strategies)))
-    return _experiment("table1", (cell,), trials, seed, vehicle, time_limit_s=time_limit_s)
+    return _experiment("table1", (cell,), trials, seed, vehicle, share_survey=True, time_limit_s=time_limit_s)
 
 
 def boxes(
@@ -143,6 +143,7 @@ def _experiment(
     *,
     think_s: float = 3.0,
     tell_prices: bool = False,
+    share_survey: bool = False,
     time_limit_s: float | None = None,
 ) -> Experiment:
     if trials < 1:
@@ -164,5 +165,6 @@ def _experiment(
         tell_prices=tell_prices,
         time_limit_s=usual_s if time_limit_s is None else time_limit_s,
         share_plans=vehicle == "kinematic",
+        share_survey=share_survey and vehicle == "mujoco",
         versions=versions(),
     )

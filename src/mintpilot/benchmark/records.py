@@ -74,8 +74,9 @@ class TrialRecord(Part):
     deliberation_max_s: float = 0.0
     """The longest single deliberation, its wording included."""
     survey_s: float = 0.0
-    """Computing and simulating the survey flight."""
+    """Computing and simulating the survey flight; about 0 where another method's survey was taken over."""
     frames: int = 0
+    """Pictures that were looked at, those of its own survey included."""
     asked: tuple[AskedRecord, ...] = ()
     path_m: tuple[tuple[float, float], ...] = ()
     """What was flown, seen from above, thinned to a few dozen points."""

@@ -14,6 +14,7 @@ from mintpilot.benchmark.deadline import TrialTimeoutError, deadline
 from mintpilot.benchmark.experiment import Cell, Experiment
 from mintpilot.benchmark.methods import Method, make_strategy
 from mintpilot.benchmark.records import TrialRecord
+from mintpilot.benchmark.shared_survey import SharedSurvey
 from mintpilot.benchmark.tally import Tally
 from mintpilot.core.mission import Outcome, Verdict
 from mintpilot.core.ports import Planner
@@ -30,7 +31,12 @@ CRASHED = "crashed"
 
 
 def fly_trial(
-    experiment: Experiment, cell: Cell, method: Method, world: World, planner: Planner | None = None
+    experiment: Experiment,
+    cell: Cell,
+    method: Method,
+    world: World,
+    planner: Planner | None = None,
+    survey: SharedSurvey | None = None,
 ) -> TrialRecord:
     """Flies one mission. Never raises for what the method does: that is the trial's own failure.
 
@@ -40,13 +46,14 @@ def fly_trial(
         method: who decides.
         world: as the drone believes it; the truth is the scene's.
         planner: shares plans with other methods in the same world; None for one of its own.
+        survey: hands on the first survey of this world; None: the method flies its own.
     """
     begun = time.perf_counter()
     tally, flight = Tally(), _Flight()
     error = ""
     try:
         with deadline(experiment.time_limit_s):
-            verdict = flight.fly(experiment, cell, method, world, planner, tally)
+            verdict = flight.fly(experiment, cell, method, world, planner, survey, tally)
             outcome, reason = verdict.outcome.value, verdict.reason
     except TrialTimeoutError:
         outcome = TIMED_OUT
@@ -113,6 +120,7 @@ class _Flight:
         method: Method,
         world: World,
         planner: Planner | None,
+        survey: SharedSurvey | None,
         tally: Tally,
     ) -> Verdict:
         condition = cell.condition
@@ -127,14 +135,16 @@ class _Flight:
             thinking = replace(crew.thinking, strategy=make_strategy(method, world.seed))
             if planner is not None:
                 thinking = replace(thinking, planner=planner)
-            named = replace(crew, thinking=thinking, strategy_name=method.name, survey=self._timed(crew))
+            named = replace(crew, thinking=thinking, strategy_name=method.name, survey=self._timed(crew, survey))
             verdict = fly_mission(named)
             self._ended_s = crew.vehicle.state().time_s
         return verdict
 
-    def _timed(self, crew: Crew) -> Callable[[], SemanticMap]:
+    def _timed(self, crew: Crew, shared: SharedSurvey | None) -> Callable[[], SemanticMap]:
+        make = crew.survey if shared is None else shared.survey_of(crew)
+
         def survey() -> SemanticMap:
-            first = crew.survey()
+            first = make()
             self._begun_s = self._ended_s = crew.vehicle.state().time_s
             return first
 

@@ -10,6 +10,7 @@ from mintpilot.benchmark.conditions import believed_world, true_world
 from mintpilot.benchmark.experiment import Experiment, WorldTask
 from mintpilot.benchmark.omniscient import survey_world
 from mintpilot.benchmark.records import Record
+from mintpilot.benchmark.shared_survey import SharedSurvey
 from mintpilot.benchmark.trial import fly_trial
 from mintpilot.benchmark.warm import WarmPlanner
 
@@ -27,7 +28,8 @@ def do_task(experiment: Experiment, task: WorldTask, begin: Begin) -> Iterator[R
         yield survey_world(world, experiment=experiment.name, cell=cell.name, planner=planner)
     believed = believed_world(world, cell.condition)
     shared = planner if experiment.share_plans else None
+    survey = SharedSurvey() if experiment.share_survey else None
     for method in cell.methods:
         if method.name in task.methods:
             begin(method.name)
-            yield fly_trial(experiment, cell, method, believed, shared)
+            yield fly_trial(experiment, cell, method, believed, shared, survey)

@@ -25,12 +25,16 @@ class Eyes(Protocol):
 
 
 class CameraEyes:
-    """Picture → detections → voxels."""
+    """Picture → detections → voxels.
+
+    Attributes:
+        builder: gathers what was seen; whoever has one that has seen the same world may put it here.
+    """
 
     def __init__(self, *, camera: Camera, perception: Perception, builder: MapBuilder, recorder: Recorder) -> None:
         self._camera = camera
         self._perception = perception
-        self._builder = builder
+        self.builder = builder
         self._recorder = recorder
         self._count = 0
 
@@ -40,7 +44,7 @@ class CameraEyes:
         begun = time.perf_counter()
         detections = self._perception.detect(frame, self._count)
         seen = time.perf_counter()
-        self._builder.integrate(frame, detections)
+        self.builder.integrate(frame, detections)
         self._recorder.record(FrameSeen(index=self._count, frame=frame, detections=detections))
         self._recorder.record(Timed(stage="perception", seconds=seen - begun))
         self._recorder.record(Timed(stage="mapping", seconds=time.perf_counter() - seen))
@@ -54,13 +58,13 @@ class CameraEyes:
     def redraw(self, previous: SemanticMap | None) -> SemanticMap:
         """The map of all that was taken in so far."""
         begun = time.perf_counter()
-        newer = self._builder.snapshot(previous)
+        newer = self.builder.snapshot(previous)
         self._recorder.record(Timed(stage="mapping", seconds=time.perf_counter() - begun))
         return newer
 
     def flown(self, points_m: Floats, radius_m: float) -> None:
         """See `Eyes.flown`."""
-        self._builder.mark_flown(points_m, radius_m)
+        self.builder.mark_flown(points_m, radius_m)
 
 
 class FixedEyes:

@@ -19,7 +19,11 @@ ENTERED = np.dtype([("mask", np.uint64), ("cap", np.float64)])
 """A set of regions, and the least cost of a way found so far that enters no other region."""
 
 FOUND = np.dtype([("cost", np.float64), ("label", np.int64)])
-"""A way to the goal."""
+"""A way to the goal: its cost, and the label from which on it is the shortest way of the optimistic map."""
+
+AIM = np.dtype([("mask", np.uint64), ("tag", np.uint32), ("last", np.int32)])
+"""The shortest way from a node to the goal on the optimistic map: the regions that it enters, the number of the search
+that wrote this, and the move of the field search that led from the next node of that way to this one."""
 
 SMALL = -1
 SPENT = -2
@@ -45,6 +49,49 @@ def numbered(
         if sets[i].mask & ~mask == 0:
             sets[known].cap = min(sets[known].cap, best[i])
     return known
+
+
+@njit(cache=True, error_model="numpy")
+def take_aim(
+    node: int,
+    aims: NDArray[np.void],
+    cells: NDArray[np.void],
+    tag: int,
+    allowed: Words,
+    offset: Ints,
+    swept: Ints,
+    region: NDArray[np.uint64],
+) -> None:
+    """Writes the aim of a node, and of all nodes on its way up to the first that has one.
+
+    Must come before the node's first label, which takes the place of the field's move in ``cells``.
+    """
+    trail = np.empty(64, np.int64)
+    count = 0
+    while aims[node].tag != tag:
+        if count == trail.size:
+            longer = np.empty(2 * count, np.int64)
+            longer[:count] = trail
+            trail = longer
+        trail[count] = node
+        count += 1
+        last = cells[node].last
+        if last == NO_MOVE:
+            break
+        node -= offset[last]
+    for i in range(count - 1, -1, -1):
+        here = trail[i]
+        last = cells[here].last
+        mask = region[here]
+        if last != NO_MOVE:
+            ahead = here - offset[last]
+            mask = aims[ahead].mask
+            if allowed[ahead] & NEAR:
+                for j in range(swept.shape[1]):
+                    mask |= region[ahead + swept[last, j]]
+        aims[here].mask = mask
+        aims[here].last = last
+        aims[here].tag = tag
 
 
 @njit(cache=True, error_model="numpy")
@@ -110,11 +157,11 @@ def search_labels(
     swept: Ints,
     region: NDArray[np.uint64],
     start: int,
-    goal: int,
     bound: float,
     budget: int,
     cells: NDArray[np.void],
     tag: int,
+    aims: NDArray[np.void],
     pool: NDArray[np.void],
     sets: NDArray[np.void],
     found: NDArray[np.void],
@@ -135,6 +182,7 @@ def search_labels(
     index = np.full(2 * sets.size, -1, np.int32)
     best = np.full(sets.size, np.inf)
     numbered(region[start], sets, index, 0, bound, best)
+    take_aim(start, aims, cells, tag, allowed, offset, swept, region)
     append(pool, cells, head, 0, 0, 0.0, 0, start, -1, NO_MOVE)
     count, known, used, queued, bucket, expanded, work = 0, 1, 1, 1, 0, 0, 0
     while queued > 0:
@@ -152,14 +200,16 @@ def search_labels(
         if work > budget:
             return SPENT, used, expanded
         mask = sets[number].mask
-        if node == goal:
-            found[count].cost = g
+        if aims[node].mask & ~mask == 0:
+            # The shortest way on from here enters nothing new: no other way on is better for any set of regions.
+            cost = g + cells[node].g
+            found[count].cost = cost
             found[count].label = label
             count += 1
-            best[number] = g
+            best[number] = cost
             for i in range(known):
                 if mask & ~sets[i].mask == 0:
-                    sets[i].cap = min(sets[i].cap, g)
+                    sets[i].cap = min(sets[i].cap, cost)
             continue
         expanded += 1
         ground = allowed[node] >> np.uint64(32)
@@ -194,6 +244,8 @@ def search_labels(
             work += abs(compared)
             if compared < 0:
                 continue
+            if aims[to].tag != tag:
+                take_aim(to, aims, cells, tag, allowed, offset, swept, region)
             append(pool, cells, head, used, max(bucket, int((f - f0) * PER_EDGE)), cost, into, to, label, k)
             used += 1
             queued += 1
@@ -208,17 +260,22 @@ def forget(pool: NDArray[np.void], used: int, cells: NDArray[np.void]) -> None:
 
 
 @njit(cache=True, error_model="numpy")
-def trace(pool: NDArray[np.void], label: int) -> Ints:
-    """Nodes (n,) from the start to where the label is."""
-    count = 0
+def trace(pool: NDArray[np.void], label: int, aims: NDArray[np.void], offset: Ints) -> Ints:
+    """Nodes (n,) from the start to where the label is, and on to the goal."""
+    ahead, count = 0, 0
+    node = pool[label].node
+    while aims[node].last != NO_MOVE:
+        ahead += 1
+        node -= offset[aims[node].last]
     i = label
     while i >= 0:
         count += 1
         i = pool[i].parent
-    path = np.empty(count, np.int64)
+    path = np.empty(count + ahead, np.int64)
     i = label
-    while i >= 0:
-        count -= 1
-        path[count] = pool[i].node
+    for at in range(count - 1, -1, -1):
+        path[at] = pool[i].node
         i = pool[i].parent
+    for at in range(count, count + ahead):
+        path[at] = path[at - 1] - offset[aims[path[at - 1]].last]
     return path

@@ -4,7 +4,8 @@
 2. Distances to the goal on the optimistic map, cut off by that bound, are a perfect heuristic for every hypothesis. A
    region whose cells all lie on ways as long as the bound is never touched: it is irrelevant.
 3. One search over labels (cost, set of regions entered), where a label is beaten by one at the same place with no more
-   cost and no other region, gives the decision list.
+   cost and no other region, gives the decision list. A label whose shortest way on enters nothing new is done: it is
+   a way, and its place needs no other continuation.
 
 Detours in series can make the list approach 2^k. The labels have a budget; when it is hit, lazy branching with the same
 heuristic goes on, exact and slower, within a bound on its searches; what it leaves out is reported, never guessed.
@@ -22,8 +23,9 @@ from mintpilot.core.geometry import Bools, Floats, Ints
 from mintpilot.planning import joint_kernel
 from mintpilot.planning.decision_list import DecisionList, Way, sorted_ways
 from mintpilot.planning.grid_search import GridSearch
+from mintpilot.planning.lattice import cost_of_moves
 from mintpilot.planning.lazy import lazy_ways
-from mintpilot.planning.overlay import Overlay, closed_moves, entered_by, overlay_of
+from mintpilot.planning.overlay import Overlay, closed_moves, followed, overlay_of
 
 MAX_REGIONS = 63
 """Regions that one search can tell apart; the least relevant ones beyond it are taken as blocked."""
@@ -59,6 +61,7 @@ class JointSearch:
         self.labels = 0
         """Labels that the last search made."""
         self._pool: NDArray[np.void] = np.empty(min(1 << 14, self.effort.labels), joint_kernel.LABEL)
+        self._aims: NDArray[np.void] = np.zeros(self.grid.lattice.size, joint_kernel.AIM)
         self._sets: NDArray[np.void] = np.empty(1 << 10, joint_kernel.ENTERED)
         self._found: NDArray[np.void] = np.empty(1 << 10, joint_kernel.FOUND)
         self._overlays: dict[tuple[int, ...], Overlay] = {}
@@ -78,7 +81,7 @@ class JointSearch:
         bound, safe_path = self.grid.node_path(*ends, overlay.without)
         ways = [self._way(safe_path, overlay)] if np.isfinite(bound) else []
         self.grid.node_field(ends[1], ends[0], bound, self._opened(chosen))
-        done, more = self._labels(*ends, bound, overlay)
+        done, more = self._labels(ends[0], bound, overlay)
         result: DecisionList[NDArray[np.int64]] = DecisionList(ways=())
         if not done:
             result = self._branch(*ends, overlay, chosen)
@@ -139,9 +142,7 @@ class JointSearch:
             self._overlays[chosen] = overlay_of(self.grid.lattice, nodes, self._opened(chosen))
         return self._overlays[chosen]
 
-    def _labels(
-        self, start: int, goal: int, bound: float, overlay: Overlay
-    ) -> tuple[bool, list[Way[NDArray[np.int64]]]]:
+    def _labels(self, start: int, bound: float, overlay: Overlay) -> tuple[bool, list[Way[NDArray[np.int64]]]]:
         """The search over labels; needs the field of distances to the goal in the workspace."""
         lattice, work, moves = self.grid.lattice, self.grid.work, self.grid.lattice.moves
         count = joint_kernel.SMALL
@@ -157,11 +158,11 @@ class JointSearch:
                 lattice.swept,
                 overlay.region,
                 start,
-                goal,
                 bound,
                 self.effort.comparisons,
                 work.cells,
                 work.tag,
+                self._aims,
                 self._pool,
                 self._sets,
                 self._found,
@@ -170,8 +171,17 @@ class JointSearch:
                 joint_kernel.forget(self._pool, self.labels, work.cells)
                 if count == joint_kernel.SPENT or not self._grow():
                     return False, []
-        labels = [int(i) for i in self._found["label"][:count]]
-        return True, [self._way(joint_kernel.trace(self._pool, i), overlay) for i in labels]
+        return True, [
+            self._way(joint_kernel.trace(self._pool, i, self._aims, lattice.offset), overlay)
+            for i in self._unbeaten(count)
+        ]
+
+    def _unbeaten(self, count: int) -> list[int]:
+        """Of the labels found, those that no other one beats."""
+        labels = self._found["label"][:count]
+        masks = self._sets["mask"][self._pool["set"][labels]]
+        found = zip(self._found["cost"][:count].tolist(), masks.tolist(), labels.tolist(), strict=True)
+        return [way.path for way in sorted_ways(Way(cost=c, mask=m, path=i) for c, m, i in found)]
 
     def _grow(self) -> bool:
         """Makes room for more labels and ways; False when the budget is spent."""
@@ -192,9 +202,10 @@ class JointSearch:
 
     def _way(self, nodes: NDArray[np.int64], overlay: Overlay) -> Way[NDArray[np.int64]]:
         lattice = self.grid.lattice
-        mask = int(entered_by(nodes, lattice.offset, lattice.swept, overlay.region))
-        cells = lattice.cells(nodes)
-        return Way(cost=lattice.path_cost(cells), mask=mask, path=cells)
+        _, rows, columns = lattice.padded
+        cells, kinds, mask = followed(nodes, rows, columns, lattice.offset, lattice.swept, overlay.region)
+        cells -= (0 if lattice.shape[0] == 1 else 1, 1, 1)
+        return Way(cost=cost_of_moves(kinds), mask=int(mask), path=cells)
 
     def _named(self, way: Way[Ints], chosen: tuple[int, ...]) -> Way[Ints]:
         """The way with its mask in terms of all regions instead of the chosen ones."""

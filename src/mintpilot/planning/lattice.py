@@ -76,8 +76,12 @@ class Lattice:
 
     def path_cost(self, cells: Ints) -> float:
         """Length of a path of neighbouring cells (n, 3) in edges, the same for equal counts of moves."""
-        kinds = np.bincount(np.abs(np.diff(cells, axis=0)).sum(axis=1), minlength=4)
-        return float(kinds[1]) + float(kinds[2]) * 2**0.5 + float(kinds[3]) * 3**0.5
+        return cost_of_moves(np.bincount(np.abs(np.diff(cells, axis=0)).sum(axis=1), minlength=4))
+
+
+def cost_of_moves(kinds: Ints) -> float:
+    """Length in edges of so many moves (4,) along 0, 1, 2 and 3 axes."""
+    return float(kinds[1]) + float(kinds[2]) * 2**0.5 + float(kinds[3]) * 3**0.5
 
 
 def lattice_of(free: Bools, *, cut_corners: bool = False) -> Lattice:

@@ -83,12 +83,40 @@ def _close(
 
 
 @njit(cache=True, error_model="numpy")
-def entered_by(path: Ints, offset: Ints, swept: Ints, region: NDArray[np.uint64]) -> np.uint64:
-    """Bit set of the regions that a path of nodes touches, side cells of its diagonal moves included."""
+def followed(
+    path: Ints, rows: int, columns: int, offset: Ints, swept: Ints, region: NDArray[np.uint64]
+) -> tuple[Ints, Ints, np.uint64]:
+    """What a path of nodes (n,) is made of.
+
+    Args:
+        path: neighbouring nodes.
+        rows: of the lattice with its rim.
+        columns: of the lattice with its rim.
+        offset: what moves add to a node.
+        swept: what moves sweep.
+        region: bit set of the regions of each node.
+
+    Returns:
+        (cells (n, 3) ``[z, y, x]`` of the lattice with its rim; number of moves (4,) along 0, 1, 2 and 3 axes; bit set
+        of the regions that it touches, side cells of its diagonal moves included).
+    """
+    cells = np.empty((path.size, 3), np.int64)
+    kinds = np.zeros(4, np.int64)
     mask = region[path[0]]
-    for i in range(1, path.size):
+    for i in range(path.size):
+        node = path[i]
+        row = node // columns
+        cells[i, 0], cells[i, 1], cells[i, 2] = row // rows, row % rows, node - row * columns
+        if i == 0:
+            continue
+        before = path[i - 1]
+        along = 0
+        for axis in range(3):
+            along += cells[i, axis] != cells[i - 1, axis]
+        kinds[along] += 1
         for k in range(offset.size):
-            if path[i - 1] + offset[k] == path[i]:
+            if before + offset[k] == node:
                 for j in range(swept.shape[1]):
-                    mask |= region[path[i - 1] + swept[k, j]]
-    return np.uint64(mask)
+                    mask |= region[before + swept[k, j]]
+                break
+    return cells, kinds, np.uint64(mask)
