@@ -54,6 +54,7 @@ TITLES = {
     "GoalSpec": "goal",
     "VehicleSpec": "vehicle",
     "AskingSpec": "asking",
+    "LanguageSpec": "language",
     "SurveySpec": "survey",
     "PriorsSpec": "priors",
     "CorrelationSpec": "correlation",

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import io
+from functools import partial
 
 import numpy as np
 import pytest
 from rich.console import Console
 
 from mintpilot.assembly.registry import load, names
+from mintpilot.assembly.talk import Talk
 from mintpilot.conformance import (
     check_metric,
     check_objective,
@@ -68,7 +70,8 @@ def test_the_run_folder_is_a_recorder(tmp_path):
 def test_the_terminal_is_an_operator(tmp_path, talk):
     (tmp_path / "talk").write_text(talk)
     with (tmp_path / "talk").open() as typed:
-        check_operator(lambda: TerminalOperator(Console(file=io.StringIO()), typed), patience_s=0.2)
+        make = partial(TerminalOperator, Console(file=io.StringIO()), typed, understand=Talk().understand)
+        check_operator(make, patience_s=0.2)
 
 
 @pytest.mark.parametrize("silence_rate", [0.0, 1.0])

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -9,6 +11,7 @@ from hypothesis import strategies as st
 
 from mintpilot.core.errors import InputError
 from mintpilot.core.gap import GapKind, KnowledgeGap
+from mintpilot.core.ports import SPEAKING_S
 from mintpilot.core.query import Answer, Combine, Literal, Query, Question, Reply, Saying, SayingKind
 from mintpilot.interaction.scripted import FunctionOperator, RecordedOperator, ScriptedOperator
 
@@ -107,6 +110,35 @@ def test_recorded_answers_come_in_order_then_silence():
     assert [a.latency_s for a in answers] == [0.0, 7.0, 5.0]
     assert operator.questions == [asked] * 3
     assert operator.told == ["hello"]
+
+
+class Words:
+    """Better words, or none, and how long they were waited for."""
+
+    done = True
+
+    def __init__(self, words: Question | None) -> None:
+        self.words, self.waited_s = words, 0.0
+
+    def wait(self, timeout_s: float) -> Question | None:
+        self.waited_s = timeout_s
+        return self.words
+
+
+@pytest.mark.parametrize("has_words", [True, False])
+def test_who_hears_the_question_hears_the_better_words_if_they_come_in_time(has_words):
+    asked = question(("x", {"a"}))
+    words = Words(replace(asked, text="Better?") if has_words else None)
+    heard: list[str] = []
+    scripted = ScriptedOperator(Truth(x="a"), rng=np.random.default_rng(0))
+    recorded = RecordedOperator([Reply.YES])
+    function = FunctionOperator(lambda asked, patience_s: heard.append(asked.text) or Reply.YES)
+    for operator in (scripted, recorded, function):
+        answer = operator.ask(asked, 10.0, words)
+        assert answer.reply is Reply.YES
+        assert (answer.better_s is not None) is has_words
+        assert words.waited_s == SPEAKING_S
+    assert [q.text for q in recorded.questions] == heard == ["Better?" if has_words else "?"]
 
 
 def test_a_function_answers():

@@ -12,16 +12,16 @@ import sys
 import threading
 import time
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from hypothesis import example, given
-from hypothesis import strategies as st
 from rich.console import Console
+from tests.language.questions import BOX
 
+from mintpilot.assembly.talk import Talk
 from mintpilot.core.errors import DeviceError
 from mintpilot.core.query import Command, Question, Reply
-from mintpilot.interaction.replies import understand
 from mintpilot.interaction.terminal import TerminalOperator
 
 from .test_scripted import question
@@ -61,7 +61,7 @@ def pipe() -> Iterator[Pipe]:
 
 def operator(pipe: Pipe) -> tuple[TerminalOperator, io.StringIO]:
     shown = io.StringIO()
-    return TerminalOperator(Console(file=shown, width=100), pipe), shown
+    return TerminalOperator(Console(file=shown, width=100), pipe, understand=Talk().understand), shown
 
 
 @pytest.mark.parametrize(
@@ -94,16 +94,79 @@ def test_orders_are_obeyed_at_once(pipe, typed, command):
     assert answer.reply is not Reply.YES
 
 
-def test_garbage_is_asked_again_within_the_patience(pipe):
+def test_what_is_not_understood_is_asked_for_again(pipe):
     asked, shown = operator(pipe)
-    pipe.say(b"\xff\xfe\x00\n\nyesno\n[red]y[/red]\nyes\n")
+    pipe.say(b"\xff\xfe\x00\n\n\nyes\n")
     assert asked.ask(ASKED, 5.0).reply is Reply.YES
-    assert shown.getvalue().count("Please type y (yes), n (no)") == 4
+    assert shown.getvalue().count("Please say yes, no") == 1
+
+
+def test_but_only_once(pipe):
+    asked, shown = operator(pipe)
+    pipe.say(b"yesno\nbananas\nyes\n")
+    answer = asked.ask(ASKED, 5.0)
+    assert (answer.reply, answer.text) == (Reply.UNSURE, "bananas")
+    assert shown.getvalue().count("Please say yes, no") == 1
+
+
+def test_what_is_understood_goes_with_the_answer(pipe):
+    asked, _ = operator(pipe)
+    pipe.say(b"Not the red one, the blue one\n")
+    answer = asked.ask(BOX, 5.0)
+    assert (answer.reply, answer.understood_by) == (Reply.NO, "rules")
+    assert [(cut.literals[0].values, yes) for cut, yes in answer.also] == [(frozenset({"box-2", "box-3"}), True)]
+
+
+class Later:
+    """Better words that come when the test says so."""
+
+    def __init__(self, words: Question | None = None) -> None:
+        self.words, self.done = words, words is not None
+
+    def wait(self, timeout_s: float) -> Question | None:
+        return self.words
+
+
+def test_better_words_are_shown_below_the_first_ones_with_the_consequences(pipe):
+    asked, shown = operator(pipe)
+    later = Later()
+
+    def come() -> None:
+        later.words, later.done = replace(ASKED, text="Is the smoke safe?\x1b[2J"), True
+        threading.Timer(0.3, pipe.say, [b"y\n"]).start()
+
+    threading.Timer(0.2, come).start()
+    answer = asked.ask(ASKED, 20.0, later)
+    first, _, second = shown.getvalue().partition("The same in other words:")
+    assert "Can I fly through" in first
+    assert "Your answer" in first
+    for words in ("Is the smoke safe? [2J", "→ I fly through it", "→ I fly around it", "Your answer"):
+        assert words in second
+    assert answer.reply is Reply.YES
+    assert answer.better_s is not None
+    assert 0.1 < answer.better_s < answer.latency_s
+
+
+def test_who_answers_before_the_better_words_come_is_heard_at_once(pipe):
+    asked, shown = operator(pipe)
+    pipe.say(b"n\n")
+    answer = asked.ask(ASKED, 20.0, Later())
+    assert (answer.reply, answer.better_s) == (Reply.NO, None)
+    assert "other words" not in shown.getvalue()
+
+
+def test_no_better_words_are_not_shown(pipe):
+    asked, shown = operator(pipe)
+    later = Later()
+    later.done = True
+    threading.Timer(0.2, pipe.say, [b"y\n"]).start()
+    assert asked.ask(ASKED, 20.0, later).better_s is None
+    assert "other words" not in shown.getvalue()
 
 
 def test_garbage_alone_ends_in_silence(pipe):
     asked, _ = operator(pipe)
-    pipe.say(b"maybe\n")
+    pipe.say(b"hm hm hm\n")
     answer = asked.ask(ASKED, 0.2)
     assert answer.reply is Reply.TIMEOUT
     assert answer.latency_s >= 0.2
@@ -139,17 +202,7 @@ def test_messages_are_shown_without_control_codes(pipe):
 
 def test_a_closed_input_is_refused():
     with pytest.raises(DeviceError, match="scripted operator"):
-        TerminalOperator(Console(file=io.StringIO()), io.StringIO())
-
-
-@given(st.text(max_size=12))
-@example("yes no")
-@example("not yes")
-@example("y n")
-@example("yep")
-def test_only_the_listed_words_mean_yes(text):
-    if understand(text) is Reply.YES:
-        assert text.strip().rstrip(".! ").lower() in ("y", "yes")
+        TerminalOperator(Console(file=io.StringIO()), io.StringIO(), understand=Talk().understand)
 
 
 CHILD = f"""
@@ -157,8 +210,9 @@ import sys
 sys.path.insert(0, {str(ROOT)!r})
 from rich.console import Console
 from tests.interaction.test_terminal import ASKED
+from mintpilot.assembly.talk import Talk
 from mintpilot.interaction.terminal import TerminalOperator
-asked = TerminalOperator(Console(), sys.stdin)
+asked = TerminalOperator(Console(), sys.stdin, understand=Talk().understand)
 print("ready", flush=True)
 try:
     for _ in range(2):

@@ -5,16 +5,16 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from pathlib import Path
-from typing import TypeAlias
+from typing import TypeAlias, cast
 
 from mintpilot.assembly.crews import Choices, VehicleChoice, crew_for, scripted_operator, thinking_parts
 from mintpilot.assembly.deliberation import DeliberationReport, deliberation_report
 from mintpilot.assembly.soundness import unsound_parts
+from mintpilot.assembly.talk import Talk, talk_for
 from mintpilot.assembly.worlds import World, build_world
 from mintpilot.core.errors import UnknownNameError
 from mintpilot.core.events import Event
-from mintpilot.core.ports import Ask, Operator, Recorder
-from mintpilot.elicitation.wording import word_question
+from mintpilot.core.ports import Ask, LanguageModel, Operator, Recorder, Understand
 from mintpilot.interaction.scripted import ScriptedOperator
 from mintpilot.mission.account import first_accounts
 from mintpilot.mission.loop import fly_mission
@@ -30,6 +30,8 @@ from mintpilot.recording.run_folder import RunFolder
 
 Progress: TypeAlias = Callable[[Event], object]
 """Called with every event of a mission, as it happens."""
+MakeOperator: TypeAlias = Callable[[Understand], Operator]
+"""Makes an operator that hears free words, given what understands them."""
 
 
 def check_mission(path: str | Path) -> list[Problem]:
@@ -41,7 +43,13 @@ def check_mission(path: str | Path) -> list[Problem]:
 
 
 def plan_mission(
-    mission: str | Path | MissionFile, *, strategy: str = "mint", seed: int | None = None, base: Path | None = None
+    mission: str | Path | MissionFile,
+    *,
+    strategy: str = "mint",
+    seed: int | None = None,
+    base: Path | None = None,
+    llm: str | LanguageModel | None = None,
+    lang: str | None = None,
 ) -> DeliberationReport:
     """Deliberates on a mission without flying it, on a perfect survey's map or on the map that it gives.
 
@@ -50,15 +58,23 @@ def plan_mission(
         strategy: name of the method of asking.
         seed: overrides the seed in the file.
         base: folder that file names in the mission are relative to; default: that of the file, or the present one.
+        llm: language model by its registered name, or one that was made already; default: as the file says.
+        lang: in which the question is worded; default: as the file says.
 
     Raises:
         MissionError: the file has mistakes.
         InfeasibleError: nothing can be flown, whatever the answers are.
-        UnknownNameError: nobody registered that strategy.
+        UnknownNameError: nobody registered that strategy, model or language.
+        MissingPartError: the language model needs a part that is not installed.
     """
     file, folder = _opened(mission, base)
-    world = build_world(file, base=folder, seed=seed)
-    parts = thinking_parts(world, Choices(strategy=strategy))
+    with talk_for(file.language, llm=llm, lang=lang) as talk:
+        return _planned(file, folder, talk, strategy=strategy, seed=seed)
+
+
+def _planned(file: MissionFile, folder: Path, talk: Talk, *, strategy: str, seed: int | None) -> DeliberationReport:
+    world = build_world(file, base=folder, seed=seed, parse=talk.parse)
+    parts = thinking_parts(world, Choices(strategy=strategy), talk)
     begun = time.perf_counter()
     seen = preview(
         Mind(map=world.map, belief=prior_belief(())),
@@ -71,7 +87,8 @@ def plan_mission(
     question = None
     if isinstance(decision, Ask):
         spoken_of = tuple(g for g in seen.first.findings.gaps if g.id in decision.scored.query.gap_ids)
-        question = word_question(decision.scored.query, spoken_of, decision.mint)
+        question = talk.word(decision.scored.query, spoken_of, decision.mint)
+        question = talk.improve(question) if talk.improve is not None else question
     return deliberation_report(
         seen,
         mission=file.name,
@@ -85,25 +102,31 @@ def plan_mission(
 def run_mission(
     mission: str | Path | MissionFile,
     *,
-    operator: Operator | str = "scripted",
+    operator: Operator | MakeOperator | str = "scripted",
     vehicle: str = "mujoco",
     strategy: str = "mint",
     seed: int | None = None,
     out: Path | None = None,
     progress: Progress | None = None,
     base: Path | None = None,
+    llm: str | LanguageModel | None = None,
+    lang: str | None = None,
 ) -> MissionRecord:
     """Flies a mission and keeps what happened.
 
     Args:
         mission: a mission file's path, or its contents.
-        operator: who answers; ``"scripted"``: one that knows the truth, with the errors that the file states.
+        operator: who answers, or what makes such a one, given what understands free words; ``"scripted"``: one that
+            knows the truth, with the errors that the file states.
         vehicle: ``"mujoco"`` or ``"kinematic"``; a mission on a given map is always flown by the latter.
         strategy: name of the method of asking.
         seed: overrides the seed in the file.
         out: the run folder; None keeps nothing on disk but returns the record.
         progress: told about every event.
         base: folder that file names in the mission are relative to; default: that of the file, or the present one.
+        llm: language model by its registered name, or one that was made already (it is closed in the end); default: as
+            the file says, and that is none.
+        lang: in which questions are asked; default: as the file says.
 
     Returns:
         The record. How the mission ended is `MissionRecord.outcome`; an ending short of success is no exception.
@@ -111,22 +134,29 @@ def run_mission(
     Raises:
         InputError: the mission, or a name, is wrong.
         RecordError: the run folder cannot be written.
-        MissingPartError: MuJoCo is chosen but not installed.
+        MissingPartError: MuJoCo is chosen, or a language model, but not installed.
     """
     file, folder = _opened(mission, base)
-    world = build_world(file, base=folder, seed=seed)
     choices = Choices(strategy=strategy, vehicle=_vehicle(vehicle))
-    person = _operator(operator, world, file)
+    with talk_for(file.language, llm=llm, lang=lang) as talk:
+        world = build_world(file, base=folder, seed=seed, parse=talk.parse)
+        person = _operator(operator, world, file, talk)
+        return _flown(world, choices, person, talk, out=out, progress=progress)
+
+
+def _flown(
+    world: World, choices: Choices, person: Operator, talk: Talk, *, out: Path | None, progress: Progress | None
+) -> MissionRecord:
     keeper = RunFolder(out) if out is not None else None
     recorder = HistoryRecorder()
     recorders: list[Recorder] = [keeper if keeper is not None else recorder]
     if progress is not None:
         recorders.append(_Told(progress))
     if keeper is None:
-        with crew_for(world, choices, operator=person, recorder=TeeRecorder(*recorders)) as crew:
+        with crew_for(world, choices, operator=person, recorder=TeeRecorder(*recorders), talk=talk) as crew:
             fly_mission(crew)
         return recorder.close()
-    with keeper, crew_for(world, choices, operator=person, recorder=TeeRecorder(*recorders)) as crew:
+    with keeper, crew_for(world, choices, operator=person, recorder=TeeRecorder(*recorders), talk=talk) as crew:
         fly_mission(crew)
     return keeper.close()
 
@@ -155,9 +185,9 @@ def _vehicle(name: str) -> VehicleChoice:
         raise UnknownNameError("vehicle", name, list(VehicleChoice)) from None
 
 
-def _operator(operator: Operator | str, world: World, file: MissionFile) -> Operator:
+def _operator(operator: Operator | MakeOperator | str, world: World, file: MissionFile, talk: Talk) -> Operator:
     if not isinstance(operator, str):
-        return operator
+        return cast(Operator, operator) if hasattr(operator, "ask") else operator(talk.understand)
     if operator != "scripted":
         raise UnknownNameError("operator", operator, ["scripted"])
     scripted: ScriptedOperator = scripted_operator(world, file.operator)

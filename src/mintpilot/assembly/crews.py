@@ -10,6 +10,7 @@ from enum import StrEnum
 import numpy as np
 
 from mintpilot.assembly.registry import load
+from mintpilot.assembly.talk import Talk
 from mintpilot.assembly.worlds import World
 from mintpilot.core.geometry import GridFrame
 from mintpilot.core.ports import Operator, Perception, Recorder
@@ -46,8 +47,8 @@ class Choices:
     camera_size: tuple[int, int] = (320, 240)
 
 
-def thinking_parts(world: World, choices: Choices) -> Thinking:
-    """The parts that deliberation is done with.
+def thinking_parts(world: World, choices: Choices, talk: Talk | None = None) -> Thinking:
+    """The parts that deliberation is done with; ``talk`` may bring somebody who proposes cuts.
 
     Raises:
         UnknownNameError: a strategy, objective, metric or planner that nobody registered.
@@ -61,6 +62,7 @@ def thinking_parts(world: World, choices: Choices) -> Thinking:
         metric=load("metric", asking.impact_metric)(),
         objective=load("objective", asking.objective)(),
         groups=world.groups,
+        proposer=talk.proposer if talk is not None else None,
     )
 
 
@@ -76,23 +78,34 @@ def scripted_operator(world: World, spec: OperatorSpec) -> ScriptedOperator:
     )
 
 
-def crew_for(world: World, choices: Choices, *, operator: Operator, recorder: Recorder) -> AbstractContextManager[Crew]:
-    """A crew, as a context that closes the simulator in the end.
+def crew_for(
+    world: World, choices: Choices, *, operator: Operator, recorder: Recorder, talk: Talk | None = None
+) -> AbstractContextManager[Crew]:
+    """A crew, as a context that closes the simulator, and the language model of ``talk``, in the end.
+
+    Args:
+        world: what is flown in.
+        choices: which parts.
+        operator: who answers.
+        recorder: told about everything.
+        talk: the mission's language; None: English by template.
 
     Raises:
         MissingPartError: MuJoCo is chosen but not installed.
     """
-    return _CrewContext(world, choices, operator, recorder)
+    return _CrewContext(world, choices, operator, recorder, talk or Talk())
 
 
 class _CrewContext(AbstractContextManager[Crew]):
-    def __init__(self, world: World, choices: Choices, operator: Operator, recorder: Recorder) -> None:
+    def __init__(self, world: World, choices: Choices, operator: Operator, recorder: Recorder, talk: Talk) -> None:
         self._world, self._choices, self._operator, self._recorder = world, choices, operator, recorder
+        self._talk = talk
         self._stack = ExitStack()
 
     def __enter__(self) -> Crew:
         world, choices = self._world, self._choices
-        parts = thinking_parts(world, choices)
+        self._stack.callback(self._talk.close)
+        parts = thinking_parts(world, choices, self._talk)
         if choices.vehicle is VehicleChoice.MUJOCO and not world.is_map:
             simulator = MujocoSimulator(world.scene, world.rules, seed=world.seed, camera_size=choices.camera_size)
             self._stack.callback(simulator.close)
@@ -142,6 +155,11 @@ class _CrewContext(AbstractContextManager[Crew]):
             recorder=self._recorder,
             survey=first_map,
             judge=simulator,
+            word=self._talk.word,
+            improve=self._talk.improve,
+            remarks=self._talk.take_remarks,
+            language=self._talk.lang,
+            language_model=self._talk.model_name,
             simulated=True,
             watch_map=watch_map,
             strategy_name=self._choices.strategy,

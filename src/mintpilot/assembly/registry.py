@@ -46,9 +46,20 @@ BUILT_IN: Final = MappingProxyType(
         ),
         "planner": MappingProxyType({"grid": "mintpilot.planning.task_planner:GridPlanner"}),
         "perception": MappingProxyType({"geometric": "mintpilot.perception.geometric:GeometricPerception"}),
+        "language": MappingProxyType(
+            {
+                "template": "mintpilot.language.doubles:NoModel",
+                "endpoint": "mintpilot.language.endpoint:EndpointModel",
+                "embedded": "mintpilot.language.embedded:EmbeddedModel",
+            }
+        ),
     }
 )
 """Port → name → where it is. Every entry is called without arguments to make a part."""
+
+
+_CALLED: Final = MappingProxyType({"language": "language model"})
+"""Ports whose name says too little in a message."""
 
 
 def names(port: str) -> tuple[str, ...]:
@@ -70,7 +81,7 @@ def load(port: str, name: str) -> type:
     for entry in _plug_ins(port):
         if entry.name == name:
             return _load_plug_in(port, entry)
-    raise UnknownNameError(port, name, names(port))
+    raise UnknownNameError(_CALLED.get(port, port), name, names(port))
 
 
 def _plug_ins(port: str) -> tuple[EntryPoint, ...]:

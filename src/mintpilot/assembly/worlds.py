@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Protocol
 
 from mintpilot.assembly.declared import DeclaredTruth, wanted_of
 from mintpilot.core.errors import MissionError
 from mintpilot.core.gap import CorrelationGroup
+from mintpilot.core.geometry import Vec3
 from mintpilot.core.mission import Mission
 from mintpilot.core.plan import VehicleLimits
 from mintpilot.core.ports import TruthOracle
@@ -50,13 +52,22 @@ class World:
     groups: tuple[CorrelationGroup, ...] = ()
 
 
-def build_world(file: MissionFile, *, base: Path, seed: int | None) -> World:
+class Parse(Protocol):
+    """Reads an instruction."""
+
+    def __call__(self, text: str, /, *, home_m: Vec3 | None) -> Task:
+        """The task; ``home_m`` is where the drone comes back to, metres. Raises `InputError` with the reason."""
+        ...
+
+
+def build_world(file: MissionFile, *, base: Path, seed: int | None, parse: Parse = parse_instruction) -> World:
     """The world of a mission file.
 
     Args:
         file: the checked mission.
         base: folder that file names in it are relative to.
         seed: overrides the seed in the file.
+        parse: reads the instruction where the file gives no goals.
 
     Raises:
         InputError: the instruction is not understood, or a map or scenario cannot be used.
@@ -64,13 +75,13 @@ def build_world(file: MissionFile, *, base: Path, seed: int | None) -> World:
     world = file.world
     drawn = seed if seed is not None else (world.seed or 0)
     if isinstance(world, ScenarioWorld):
-        return _from_scenario(file, world, drawn)
+        return _from_scenario(file, world, drawn, parse)
     if isinstance(world, SceneWorld):
-        return _from_scene(file, replace(scene_of(world.scene, file.name), seed=drawn), drawn)
-    return _from_map(file, world, base, drawn)
+        return _from_scene(file, replace(scene_of(world.scene, file.name), seed=drawn), drawn, parse)
+    return _from_map(file, world, base, drawn, parse)
 
 
-def _from_scenario(file: MissionFile, world: ScenarioWorld, seed: int) -> World:
+def _from_scenario(file: MissionFile, world: ScenarioWorld, seed: int, parse: Parse) -> World:
     scenario = scenario_of(world, seed)
     given = file.model_fields_set
     limits, rules = scenario.mission.limits, scenario.rules
@@ -90,19 +101,19 @@ def _from_scenario(file: MissionFile, world: ScenarioWorld, seed: int) -> World:
     if file.survey is not None:
         surveyed = mission_of(file, start_m=mission.start_m, volume=mission.volume)
         mission = replace(mission, survey=surveyed.survey, resolution_m=surveyed.resolution_m)
-    return _assembled(file, mission, scenario.scene, rules, seed)
+    return _assembled(file, mission, scenario.scene, rules, seed, parse)
 
 
-def _from_scene(file: MissionFile, scene: Scene, seed: int) -> World:
+def _from_scene(file: MissionFile, scene: Scene, seed: int, parse: Parse) -> World:
     mission = mission_of(file, start_m=scene.start_m, volume=scene.volume)
     rules = FlightRules(endurance_s=mission.limits.endurance_s)
-    return _assembled(file, replace(mission, limits=_with_reserve(mission.limits)), scene, rules, seed)
+    return _assembled(file, replace(mission, limits=_with_reserve(mission.limits)), scene, rules, seed, parse)
 
 
-def _assembled(file: MissionFile, mission: Mission, scene: Scene, rules: FlightRules, seed: int) -> World:
+def _assembled(file: MissionFile, mission: Mission, scene: Scene, rules: FlightRules, seed: int, parse: Parse) -> World:
     return World(
         mission=mission,
-        task=task_of(file) or parse_instruction(mission.instruction, home_m=mission.start_m),
+        task=task_of(file) or parse(mission.instruction, home_m=mission.start_m),
         scene=scene,
         rules=rules,
         truth=SceneTruth(scene),
@@ -113,12 +124,12 @@ def _assembled(file: MissionFile, mission: Mission, scene: Scene, rules: FlightR
     )
 
 
-def _from_map(file: MissionFile, world: MapWorld, base: Path, seed: int) -> World:
+def _from_map(file: MissionFile, world: MapWorld, base: Path, seed: int, parse: Parse) -> World:
     map_ = map_of(world, base, file.priors)
     start = place_of(world.start_m, world.height_m)
     truths = truths_of(file)
     mission = mission_of(file, start_m=start, volume=map_.frame.box)
-    task = task_of(file, layer_m=world.height_m) or parse_instruction(mission.instruction, home_m=mission.start_m)
+    task = task_of(file, layer_m=world.height_m) or parse(mission.instruction, home_m=mission.start_m)
     wanted = wanted_of(map_, task, truths, start)
     scene = scene_of_map(
         map_,

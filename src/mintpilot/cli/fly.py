@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Callable
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
 
     from mintpilot.cli.progress import Narrator
     from mintpilot.core.events import Event
-    from mintpilot.core.ports import Operator
+    from mintpilot.core.ports import Operator, Understand
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -32,6 +33,10 @@ class FlightOptions:
     out: Path | None
     """The run folder; None: a new one under ``runs``."""
     as_json: bool
+    llm: str | None = None
+    """Language model by name; None: as the mission file says."""
+    lang: str | None = None
+    """In which questions are asked; None: as the mission file says."""
 
 
 def fly(path: Path, options: FlightOptions) -> ExitCode:
@@ -61,6 +66,8 @@ def fly(path: Path, options: FlightOptions) -> ExitCode:
                 seed=options.seed,
                 out=out,
                 progress=tell,
+                llm=options.llm,
+                lang=options.lang,
             )
         except KeyboardInterrupt:
             narrator.rest()
@@ -77,8 +84,8 @@ def fly(path: Path, options: FlightOptions) -> ExitCode:
     return ExitCode.SUCCESS if record.outcome.value == "success" else ExitCode.NOT_A_SUCCESS
 
 
-def _operator(choice: str | None, console: Console, narrator: Narrator) -> Operator | str:
-    """The person at the terminal, or the name of the scripted operator."""
+def _operator(choice: str | None, console: Console, narrator: Narrator) -> Callable[[Understand], Operator] | str:
+    """What makes the person at the terminal an operator, or the name of the scripted one."""
     somebody = sys.stdin is not None and sys.stdin.isatty() and console.is_terminal
     if choice == "scripted" or (choice is None and not somebody):
         return "scripted"
@@ -87,4 +94,4 @@ def _operator(choice: str | None, console: Console, narrator: Narrator) -> Opera
     from mintpilot.cli.progress import Attended
     from mintpilot.interaction.terminal import TerminalOperator
 
-    return Attended(TerminalOperator(console, sys.stdin), narrator)
+    return lambda understand: Attended(TerminalOperator(console, sys.stdin, understand=understand), narrator)

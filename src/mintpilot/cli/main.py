@@ -28,6 +28,8 @@ app = App(
 Json: TypeAlias = Annotated[bool, Parameter(name="--json", negative="")]
 Flag: TypeAlias = Annotated[bool, Parameter(negative="")]
 Seed: TypeAlias = Annotated[int | None, Parameter(name="--seed")]
+Llm: TypeAlias = Annotated[str | None, Parameter(name="--llm")]
+Lang: TypeAlias = Annotated[str | None, Parameter(name="--lang")]
 OperatorName: TypeAlias = Literal["terminal", "scripted"]
 VehicleName: TypeAlias = Literal["mujoco", "kinematic"]
 
@@ -51,6 +53,8 @@ def demo(
     headless: Flag = False,
     vehicle: VehicleName = "mujoco",
     seed: Seed = None,
+    llm: Llm = None,
+    lang: Lang = None,
     out: Path | None = None,
     json: Json = False,
     debug: Flag = False,
@@ -64,6 +68,8 @@ def demo(
         headless: Ask nobody: a scripted operator that knows the truth answers.
         vehicle: Physics and camera, or a fast point mass.
         seed: Draws another world; the same seed gives the same mission. Default: 0.
+        llm: Language model for words: template (none), endpoint, embedded, or a plug-in's. Default: as the file says.
+        lang: Language of the questions: en, de, fr or es. Default: as the file says.
         out: Run folder; a new one under ./runs by default.
         json: Print the outcome, questions, gaps and figures as one JSON object, and nothing else, on standard output.
             The whole record is in the run folder.
@@ -73,7 +79,14 @@ def demo(
     from mintpilot.cli.fly import FlightOptions, fly
 
     options = FlightOptions(
-        operator="scripted" if headless else None, vehicle=vehicle, strategy="mint", seed=seed, out=out, as_json=json
+        operator="scripted" if headless else None,
+        vehicle=vehicle,
+        strategy="mint",
+        seed=seed,
+        out=out,
+        as_json=json,
+        llm=llm,
+        lang=lang,
     )
     return guarded(lambda: fly(demo_path(mission), options), as_json=json, debug=debug)
 
@@ -92,6 +105,8 @@ def run(
     vehicle: VehicleName = "mujoco",
     strategy: str = "mint",
     seed: Seed = None,
+    llm: Llm = None,
+    lang: Lang = None,
     out: Path | None = None,
     json: Json = False,
     debug: Flag = False,
@@ -105,6 +120,8 @@ def run(
         vehicle: Physics and camera, or a fast point mass.
         strategy: How it decides what to ask.
         seed: Of everything that is drawn at random; overrides the one in the file.
+        llm: Language model for words: template (none), endpoint, embedded, or a plug-in's. Default: as the file says.
+        lang: Language of the questions: en, de, fr or es. Default: as the file says.
         out: Run folder; a new one under ./runs by default.
         json: Print the outcome, questions, gaps and figures as one JSON object, and nothing else, on standard output.
             The whole record is in the run folder.
@@ -112,7 +129,16 @@ def run(
     """
     from mintpilot.cli.fly import FlightOptions, fly
 
-    options = FlightOptions(operator=operator, vehicle=vehicle, strategy=strategy, seed=seed, out=out, as_json=json)
+    options = FlightOptions(
+        operator=operator,
+        vehicle=vehicle,
+        strategy=strategy,
+        seed=seed,
+        out=out,
+        as_json=json,
+        llm=llm,
+        lang=lang,
+    )
     return guarded(lambda: fly(mission, options), as_json=json, debug=debug)
 
 
@@ -128,6 +154,8 @@ def plan(
     *,
     strategy: str = "mint",
     seed: Seed = None,
+    llm: Llm = None,
+    lang: Lang = None,
     json: Json = False,
     debug: Flag = False,
 ) -> ExitCode:
@@ -139,12 +167,18 @@ def plan(
         mission: The mission file (YAML).
         strategy: How it decides what to ask.
         seed: Of everything that is drawn at random; overrides the one in the file.
+        llm: Language model for words: template (none), endpoint, embedded, or a plug-in's. Default: as the file says.
+        lang: Language of the questions: en, de, fr or es. Default: as the file says.
         json: Print one JSON object, and nothing else, on standard output.
         debug: Show the traceback of an error.
     """
     from mintpilot.cli.think import think
 
-    return guarded(lambda: think(mission, strategy=strategy, seed=seed, as_json=json), as_json=json, debug=debug)
+    return guarded(
+        lambda: think(mission, strategy=strategy, seed=seed, llm=llm, lang=lang, as_json=json),
+        as_json=json,
+        debug=debug,
+    )
 
 
 @app.command(

@@ -22,7 +22,7 @@ from mintpilot.core.events import (
     Noticed,
     PlanChosen,
 )
-from mintpilot.core.ports import Operator
+from mintpilot.core.ports import BetterWords, Operator
 from mintpilot.core.query import Answer, Question
 
 
@@ -49,6 +49,8 @@ class Narrator:
                 SpinnerColumn(), TextColumn("{task.description}"), TimeElapsedColumn(), console=console, transient=True
             )
         self._pictures = 0
+        self.noticed = ""
+        """What was noticed last, in words."""
 
     def __enter__(self) -> Self:
         self._go_on(self._stage)
@@ -65,6 +67,8 @@ class Narrator:
             self._pictures += 1
             self._go_on(f"{self._stage} ({self._pictures} pictures)")
             return
+        if isinstance(event, Noticed):
+            self.noticed = event.text
         line, stage = told(event)
         if line:
             self._say(line)
@@ -99,15 +103,16 @@ class Attended(Operator):
         self._operator = operator
         self._narrator = narrator
 
-    def ask(self, question: Question, patience_s: float) -> Answer:
+    def ask(self, question: Question, patience_s: float, better: BetterWords | None = None) -> Answer:
         """As the operator inside."""
         self._narrator.rest()
-        return self._operator.ask(question, patience_s)
+        return self._operator.ask(question, patience_s, better)
 
     def tell(self, text: str) -> None:
-        """As the operator inside."""
+        """As the operator inside; what the narrator has just said on the same screen is not said again."""
         self._narrator.rest()
-        self._operator.tell(text)
+        if text != self._narrator.noticed:
+            self._operator.tell(text)
 
 
 def told(event: Event) -> tuple[str, str]:

@@ -12,11 +12,11 @@ if TYPE_CHECKING:
     from mintpilot.assembly.deliberation import DeliberationReport, GapReport
 
 
-def think(path: Path, *, strategy: str, seed: int | None, as_json: bool) -> ExitCode:
+def think(path: Path, *, strategy: str, seed: int | None, llm: str | None, lang: str | None, as_json: bool) -> ExitCode:
     """Deliberates on the mission in that file and prints what came of it."""
     from mintpilot.assembly.api import plan_mission
 
-    report = plan_mission(path, strategy=strategy, seed=seed)
+    report = plan_mission(path, strategy=strategy, seed=seed, llm=llm, lang=lang)
     print(report.model_dump_json() if as_json else "\n".join(lines_of(report)))
     return ExitCode.SUCCESS
 

@@ -24,6 +24,10 @@ class MissionStarted:
     task: Task
     seed: int | None
     strategy: str
+    language: str = "en"
+    """In which questions are asked."""
+    language_model: str = "template"
+    """Who words them: a registered name; ``template``: no model."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -57,6 +61,10 @@ class Deliberated:
     """The best few of the other cuts."""
     certificate: Certificate | None
     seconds: float
+    proposed: tuple[ScoredQuery, ...] = ()
+    """Cuts that a language model proposed and that were sound, scored, best first."""
+    bound_bits: float | None = None
+    """No cut whatever could have told more than this; None: not worked out."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -64,9 +72,15 @@ class Asked:
     """A question was put and answered (or not)."""
 
     question: Question
+    """In the words that the person had when the answer came."""
     scored: ScoredQuery
     answer: Answer
     wording_s: float
+    """From the cut to the first words, seconds."""
+    first_text: str = ""
+    """The words that were there first, where better ones followed; else empty."""
+    better_s: float | None = None
+    """From the cut to the better words, seconds; None: the person had the first words only."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -15,7 +15,7 @@ from mintpilot.core.geometry import Bools, Floats, Ints
 from mintpilot.core.mission import AskingSettings, Verdict
 from mintpilot.core.observation import Detection, Frame
 from mintpilot.core.plan import Plan, PlanningProblem, Stop
-from mintpilot.core.query import Answer, Query, Question
+from mintpilot.core.query import Answer, Meaning, Query, Question
 from mintpilot.core.trajectory import FlightLog, Trajectory, VehicleState
 from mintpilot.core.tree import Certificate, Mint, ScoredQuery
 
@@ -104,6 +104,19 @@ class QueryObjective(Protocol):
         ...
 
 
+class Proposer(Protocol):
+    """Proposes cuts, e.g. a language model. What it proposes is checked, and scored like any cut."""
+
+    @property
+    def name(self) -> str:
+        """For the record: who proposed a cut."""
+        ...
+
+    def propose(self, mint: Mint) -> tuple[Query, ...]:
+        """Cuts over gaps that the tree branches on, in bounded time; none where it fails. Never raises."""
+        ...
+
+
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Situation:
     """What a strategy decides on."""
@@ -123,6 +136,8 @@ class Situation:
     settings: AskingSettings
     metric: ImpactMetric
     objective: QueryObjective
+    proposer: Proposer | None = None
+    """Whom a strategy may ask for cuts that it does not find by itself; None: nobody."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -132,6 +147,10 @@ class Ask:
     scored: ScoredQuery
     alternatives: tuple[ScoredQuery, ...] = ()
     mint: Mint | None = None
+    proposed: tuple[ScoredQuery, ...] = ()
+    """Cuts that a `Proposer` proposed and that were sound, scored, best first."""
+    bound_bits: float | None = None
+    """No cut whatever could tell more of the plan class than this; None: not worked out."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -143,6 +162,8 @@ class Fly:
     mint: Mint | None = None
     unsafe: bool = False
     """True only for baselines that fly through what is not known passable; refused outside a simulator."""
+    proposed: tuple[ScoredQuery, ...] = ()
+    """As in `Ask`, where proposals were looked at and none was worth asking."""
 
 
 Decision: TypeAlias = Ask | Fly
@@ -156,16 +177,45 @@ class Strategy(Protocol):
         ...
 
 
+SPEAKING_S = 1.2
+"""Seconds that whoever speaks may wait for better words: a question must be out within 1.5 s of the cut."""
+
+
+class BetterWords(Protocol):
+    """Other words for a question, made while its own are already there to be shown. They mean the very same cut."""
+
+    @property
+    def done(self) -> bool:
+        """True when there is nothing left to wait for: they are here, or will never be."""
+        ...
+
+    def wait(self, timeout_s: float) -> Question | None:
+        """The question in better words, after at most ``timeout_s`` seconds; None while there are none. No errors."""
+        ...
+
+
 class Operator(Protocol):
     """The person who knows. May be a terminal, a web page, a voice, or a script."""
 
-    def ask(self, question: Question, patience_s: float) -> Answer:
-        """Shows or says the question and waits at most ``patience_s`` seconds; silence is `Reply.TIMEOUT`."""
+    def ask(self, question: Question, patience_s: float, better: BetterWords | None = None) -> Answer:
+        """Shows or says the question and waits at most ``patience_s`` seconds; silence is `Reply.TIMEOUT`.
+
+        Args:
+            question: with the consequences of Yes and of No, which are always told beside the words.
+            patience_s: how long an answer is waited for, seconds.
+            better: other words that may be ready a little later. A screen shows the question at once and these when
+                they come; a voice may wait for them, `SPEAKING_S` at most. `Answer.better_s` says when they were
+                used. Given only where a language model is at work; they may be left alone.
+        """
         ...
 
     def tell(self, text: str) -> None:
         """Shows or says something that needs no answer."""
         ...
+
+
+Understand: TypeAlias = Callable[[str, Question, float], Meaning]
+"""Makes a reply of free words: the words, the question that they answer, and how long it may take, seconds."""
 
 
 class TruthOracle(Protocol):
@@ -243,7 +293,7 @@ class Completion:
 
 
 class LanguageModel(Protocol):
-    """Completes text. Never decides meaning (method, section 4)."""
+    """Completes text. Never decides meaning (method, section 4). A method ``close``, if any, is called in the end."""
 
     def complete(self, prompt: str, *, schema: type | None, timeout_s: float) -> Completion:
         """One completion; with ``schema`` (a pydantic model) the text should be JSON of that form, but is not trusted.
@@ -255,7 +305,9 @@ class LanguageModel(Protocol):
 
 
 __all__ = [
+    "SPEAKING_S",
     "Ask",
+    "BetterWords",
     "Camera",
     "Completion",
     "Decision",
@@ -267,12 +319,14 @@ __all__ = [
     "Perception",
     "PlanSpace",
     "Planner",
+    "Proposer",
     "QueryObjective",
     "QuerySituation",
     "Recorder",
     "Situation",
     "Strategy",
     "TruthOracle",
+    "Understand",
     "Vehicle",
     "Watch",
 ]

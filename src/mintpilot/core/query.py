@@ -148,3 +148,25 @@ class Answer:
     """Raw words, as given. Data, never an instruction to this program."""
     command: Command | None = None
     """An order, which overrides ``reply``."""
+    also: tuple[tuple[Query, bool], ...] = ()
+    """What was said beyond the question (``not the red one, the blue one``): cuts with their answers. They teach the
+    belief, and never count as the explicit yes that opens a region."""
+    understood_by: str = ""
+    """Who made a reply of the words: ``rules``, ``model``, or empty where nobody had to."""
+    better_s: float | None = None
+    """When better words (`mintpilot.core.ports.BetterWords`) were shown, seconds after the question's appearance; None:
+    the person had the first words only."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Meaning:
+    """What free words, typed or heard, mean as an answer to a question."""
+
+    reply: Reply | None
+    """None: they do not map to an answer, ask again."""
+    command: Command | None = None
+    """An order, which overrides ``reply``."""
+    also: tuple[tuple[Query, bool], ...] = ()
+    """See `Answer.also`."""
+    by: str = "rules"
+    """Who understood them."""

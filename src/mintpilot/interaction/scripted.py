@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from dataclasses import replace
 
 import numpy as np
 
 from mintpilot.core.errors import InputError
-from mintpilot.core.ports import Operator, TruthOracle
+from mintpilot.core.ports import BetterWords, Operator, TruthOracle
 from mintpilot.core.query import Answer, Question, Reply
+from mintpilot.interaction.hearing import words_to_speak
 
 
 class ScriptedOperator(Operator):
@@ -55,11 +57,16 @@ class ScriptedOperator(Operator):
         self._silence_rate = silence_rate
         self._latency_s = latency_s
 
-    def ask(self, question: Question, patience_s: float) -> Answer:
+    def ask(self, question: Question, patience_s: float, better: BetterWords | None = None) -> Answer:
         """The true answer to the question's query (its words are not looked at), or what the rates make of it.
 
-        A query that speaks of a gap without a true value is answered UNSURE.
+        A query that speaks of a gap without a true value is answered UNSURE. Better words are waited for as by somebody
+        to whom the question is spoken; they are no part of the latency.
         """
+        _, better_s = words_to_speak(question, better)
+        return replace(self._answer(question, patience_s), better_s=better_s)
+
+    def _answer(self, question: Question, patience_s: float) -> Answer:
         wrong, unsure, silent = self._rng.random(3) < (self._answer_error, self._unsure_rate, self._silence_rate)
         if silent or self._latency_s > patience_s:
             return Answer(reply=Reply.TIMEOUT, latency_s=patience_s)
@@ -99,10 +106,11 @@ class RecordedOperator(Operator):
         self.questions: list[Question] = []
         self.told: list[str] = []
 
-    def ask(self, question: Question, patience_s: float) -> Answer:
+    def ask(self, question: Question, patience_s: float, better: BetterWords | None = None) -> Answer:
         """The next recorded answer; `Reply.TIMEOUT` when none is left."""
-        self.questions.append(question)
-        return _as_answer(next(self._answers, Reply.TIMEOUT), patience_s)
+        spoken, better_s = words_to_speak(question, better)
+        self.questions.append(spoken)
+        return _as_answer(next(self._answers, Reply.TIMEOUT), patience_s, better_s)
 
     def tell(self, text: str) -> None:
         """Keeps the message."""
@@ -119,17 +127,23 @@ class FunctionOperator(Operator):
     def __init__(self, answer: Callable[[Question, float], Answer | Reply]) -> None:
         self._answer = answer
 
-    def ask(self, question: Question, patience_s: float) -> Answer:
+    def ask(self, question: Question, patience_s: float, better: BetterWords | None = None) -> Answer:
         """What the function says."""
-        return _as_answer(self._answer(question, patience_s), patience_s)
+        spoken, better_s = words_to_speak(question, better)
+        return _as_answer(self._answer(spoken, patience_s), patience_s, better_s)
 
     def tell(self, text: str) -> None:
         """Nobody is there: nothing happens."""
 
 
-def _as_answer(answer: Answer | Reply, patience_s: float) -> Answer:
+def _as_answer(answer: Answer | Reply, patience_s: float, better_s: float | None) -> Answer:
     """A bare reply as an answer; silence takes the whole patience."""
     if isinstance(answer, Answer):
-        return answer
+        return replace(answer, better_s=better_s)
     silent = answer is Reply.TIMEOUT
-    return Answer(reply=answer, latency_s=patience_s if silent else 0.0, text="" if silent else answer.value)
+    return Answer(
+        reply=answer,
+        latency_s=patience_s if silent else 0.0,
+        text="" if silent else answer.value,
+        better_s=better_s,
+    )

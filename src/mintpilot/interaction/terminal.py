@@ -7,18 +7,23 @@ import select
 import termios
 import time
 from collections.abc import Callable
+from dataclasses import dataclass, field
 from typing import Protocol
 
 from rich.console import Console, Group
 from rich.text import Text
 
 from mintpilot.core.errors import DeviceError
-from mintpilot.core.ports import Operator
-from mintpilot.core.query import Answer, Command, Question, Reply
-from mintpilot.interaction.replies import ACCEPTED, understand
+from mintpilot.core.ports import BetterWords, Operator, Understand
+from mintpilot.core.query import Answer, Question, Reply
+
+ACCEPTED = "yes, no or don't know (y, n, ?), what is the case, or an order: hold, return, abort"
+"""What may be said, for somebody who said something else."""
 
 _LONGEST_LINE = 4096
 """Bytes; what is typed beyond them without a line's end is thrown away."""
+_GLANCE_S = 0.05
+"""While better words may come, it is looked for them so often."""
 
 
 class Readable(Protocol):
@@ -27,6 +32,20 @@ class Readable(Protocol):
     def fileno(self) -> int:
         """The file descriptor."""
         ...
+
+
+@dataclass(slots=True)
+class _Turn:
+    """One question while it is open."""
+
+    started_s: float
+    patience_s: float
+    better: BetterWords | None
+    better_s: float | None = field(default=None, init=False)
+
+    @property
+    def deadline_s(self) -> float:
+        return self.started_s + self.patience_s
 
 
 class TerminalOperator(Operator):
@@ -38,13 +57,21 @@ class TerminalOperator(Operator):
     Args:
         console: where the question is shown; without a terminal plain text is written, no control codes.
         stdin: where the reply is read from, by its file descriptor (nothing else may read from it meanwhile).
+        understand: what typed words mean.
         clock: seconds, never going back.
 
     Raises:
         DeviceError: ``stdin`` has no file descriptor to read from.
     """
 
-    def __init__(self, console: Console, stdin: Readable, *, clock: Callable[[], float] = time.monotonic) -> None:
+    def __init__(
+        self,
+        console: Console,
+        stdin: Readable,
+        *,
+        understand: Understand,
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
         try:
             self._fd = stdin.fileno()
         except (OSError, ValueError, AttributeError) as error:
@@ -53,44 +80,59 @@ class TerminalOperator(Operator):
                 "use the scripted operator where nobody is there"
             ) from error
         self._console = console
+        self._understand = understand
         self._clock = clock
         self._pending = b""
         self._ended = False
 
-    def ask(self, question: Question, patience_s: float) -> Answer:
+    def ask(self, question: Question, patience_s: float, better: BetterWords | None = None) -> Answer:
         """Shows the question with the consequences of Yes and No, and reads a reply for at most ``patience_s``.
 
-        Words that are not understood are answered with what is accepted, within the same patience. The end of the
-        input counts as silence.
+        Better words are shown below the first ones when they come; the person may answer before. Words that do not map
+        to an answer are asked for again once, within the same patience; then they count as "don't know". An empty line
+        says nothing. The end of the input counts as silence.
         """
         self._drop_typed_ahead()
-        started_s = self._clock()
+        turn = _Turn(self._clock(), patience_s, better)
         self._show(question, patience_s)
+        asked_again = False
         while True:
-            line = self._read_line(started_s + patience_s)
-            latency_s = self._clock() - started_s
+            line = self._read_line(turn)
             if line is None:
                 self._console.print(Text("No answer: going on the careful way.", style="yellow"))
-                return Answer(reply=Reply.TIMEOUT, latency_s=latency_s)
-            meaning = understand(line)
-            if isinstance(meaning, Command):
-                return Answer(reply=Reply.UNSURE, latency_s=latency_s, text=line, command=meaning)
-            if meaning is not None:
-                return Answer(reply=meaning, latency_s=latency_s, text=line)
-            self._console.print(Text(f"Please type {ACCEPTED}.", style="yellow"))
+                return self._answer(turn, Reply.TIMEOUT)
+            if line:
+                meaning = self._understand(line, question, max(0.0, turn.deadline_s - self._clock()))
+                said = Answer(
+                    reply=meaning.reply if meaning.reply is not None and meaning.command is None else Reply.UNSURE,
+                    latency_s=self._clock() - turn.started_s,
+                    text=line,
+                    command=meaning.command,
+                    also=meaning.also,
+                    understood_by=meaning.by,
+                    better_s=turn.better_s,
+                )
+                if meaning.reply is not None or meaning.command is not None:
+                    return said
+                if asked_again:
+                    self._console.print(Text("I do not understand: I take it as 'don't know'.", style="yellow"))
+                    return said
+                asked_again = True
+                self._console.print(Text(f"I do not understand. Please say {ACCEPTED}.", style="yellow"))
             self._prompt()
 
     def tell(self, text: str) -> None:
         """Prints one message."""
         self._console.print(Text(_printable(text)))
 
+    def _answer(self, turn: _Turn, reply: Reply) -> Answer:
+        return Answer(reply=reply, latency_s=self._clock() - turn.started_s, better_s=turn.better_s)
+
     def _show(self, question: Question, patience_s: float) -> None:
         again = " (asked again in other words)" if question.attempt > 1 else ""
         lines = [
             Text(f"The drone asks{again}:", style="bold cyan"),
-            Text(_printable(question.text), style="bold"),
-            Text.assemble(("  y  yes         ", "green"), "→ ", _printable(question.yes_means)),
-            Text.assemble(("  n  no          ", "red"), "→ ", _printable(question.no_means)),
+            *_question_lines(question),
             Text.assemble(("  ?  don't know  ", "yellow"), "→ it asks something else, or takes the careful way"),
             Text(
                 f"Orders: hold, return, abort. Without an answer in {patience_s:.0f} s it takes the careful way.", "dim"
@@ -98,6 +140,16 @@ class TerminalOperator(Operator):
         ]
         self._console.print(Group(Text(), *lines))
         self._prompt()
+
+    def _show_better(self, turn: _Turn) -> None:
+        """Shows better words that have come; the consequences stand beside them again."""
+        question = turn.better.wait(0.0) if turn.better is not None else None
+        turn.better = None
+        if question is not None:
+            turn.better_s = self._clock() - turn.started_s
+            said = Text("The same in other words:", style="bold cyan")
+            self._console.print(Group(Text(), said, *_question_lines(question)))
+            self._prompt()
 
     def _prompt(self) -> None:
         self._console.print(Text("Your answer: ", style="bold"), end="")
@@ -108,11 +160,10 @@ class TerminalOperator(Operator):
             termios.tcflush(self._fd, termios.TCIFLUSH)
             self._pending = b""
 
-    def _read_line(self, deadline_s: float) -> str | None:
+    def _read_line(self, turn: _Turn) -> str | None:
         """The next line without its end; None when the time is over or the input has ended."""
         while b"\n" not in self._pending:
-            left_s = deadline_s - self._clock()
-            if self._ended or left_s <= 0 or not select.select([self._fd], [], [], left_s)[0]:
+            if self._ended or not self._wait_for_input(turn):
                 self._pending = b""
                 return None
             try:
@@ -128,6 +179,25 @@ class TerminalOperator(Operator):
                 self._ended = True
         line, _, self._pending = self._pending.partition(b"\n")
         return line.decode("utf-8", errors="replace").strip()
+
+    def _wait_for_input(self, turn: _Turn) -> bool:
+        """Whether there is something to read before the time is over; shows better words when they come meanwhile."""
+        while (left_s := turn.deadline_s - self._clock()) > 0:
+            waits = left_s if turn.better is None else min(left_s, _GLANCE_S)
+            if select.select([self._fd], [], [], waits)[0]:
+                return True
+            if turn.better is not None and turn.better.done:
+                self._show_better(turn)
+        return False
+
+
+def _question_lines(question: Question) -> tuple[Text, ...]:
+    """The words with what Yes and what No do to the flight."""
+    return (
+        Text(_printable(question.text), style="bold"),
+        Text.assemble(("  y  yes         ", "green"), "→ ", _printable(question.yes_means)),
+        Text.assemble(("  n  no          ", "red"), "→ ", _printable(question.no_means)),
+    )
 
 
 def _printable(text: str) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Protocol
 
@@ -15,6 +15,7 @@ from mintpilot.core.query import Command, Query, Question
 from mintpilot.core.tree import Mint, ScoredQuery
 from mintpilot.elicitation.wording import word_question
 from mintpilot.mission.mind import Mind, Thought, learn
+from mintpilot.mission.rewording import Improve, Rewording
 
 
 class Wording(Protocol):
@@ -33,6 +34,10 @@ class Interview:
     recorder: Recorder
     settings: AskingSettings
     word: Wording = word_question
+    improve: Improve | None = None
+    """Makes better words while the first ones are shown; None: nobody does."""
+    remarks: Callable[[], Sequence[str]] = tuple
+    """What went wrong with the words since it was last called, in sentences."""
     firsts: list[Thought] = field(default_factory=list, init=False)
     """Deliberations that knew of gaps nobody had known of before: the figures of the accounts come from them."""
     asked_gaps: list[str] = field(default_factory=list, init=False)
@@ -56,6 +61,8 @@ class Interview:
                 alternatives=decision.alternatives if isinstance(decision, Ask) else (),
                 certificate=decision.certificate if isinstance(decision, Fly) else None,
                 seconds=seconds,
+                proposed=decision.proposed,
+                bound_bits=decision.bound_bits if isinstance(decision, Ask) else None,
             )
         )
         self.rounds += 1
@@ -63,6 +70,13 @@ class Interview:
             if note not in self.bounds:
                 self.bounds.append(note)
                 self.recorder.record(Noticed(kind="bound", text=f"A bound on the work was reached: {note}."))
+        self.pass_on_remarks()
+
+    def pass_on_remarks(self) -> None:
+        """Tells the recorder and the operator what went wrong with the words: they learn it in the mission's thread."""
+        for remark in self.remarks():
+            self.recorder.record(Noticed(kind="language", text=remark))
+            self.operator.tell(remark)
 
 
 def put_question(interview: Interview, mind: Mind, ask: Ask) -> tuple[Mind, Command | None]:
@@ -75,9 +89,11 @@ def put_question(interview: Interview, mind: Mind, ask: Ask) -> tuple[Mind, Comm
     question = interview.word(scored.query, gaps, ask.mint, attempt=attempt)
     wording_s = time.perf_counter() - begun
     record(Timed(stage="wording", seconds=wording_s))
-    answer = interview.operator.ask(question, interview.settings.patience_s)
-    record(Asked(question=question, scored=scored, answer=answer, wording_s=wording_s))
+    asked = _put(interview, scored, question, wording_s)
+    record(asked)
+    answer = asked.answer
     record(Timed(stage="answer", seconds=answer.latency_s))
+    interview.pass_on_remarks()
     interview.asked_gaps.extend(scored.query.gap_ids)
     if answer.command is not None:
         return mind, answer.command
@@ -89,4 +105,32 @@ def put_question(interview: Interview, mind: Mind, ask: Ask) -> tuple[Mind, Comm
                 text=f"The answer to '{question.text}' goes against an earlier one; it was not taken over.",
             )
         )
+    elif lesson.surplus_refused:
+        record(
+            Noticed(
+                kind="contradiction",
+                text=f"What was said beyond '{question.text}' goes against what is known; the rest was taken over.",
+            )
+        )
     return lesson.mind, None
+
+
+def _put(interview: Interview, scored: ScoredQuery, question: Question, wording_s: float) -> Asked:
+    """Shows the question at once; better words follow when they are ready, and only a first attempt gets them."""
+    operator, patience_s = interview.operator, interview.settings.patience_s
+    if interview.improve is None or question.attempt > 1:
+        answer = operator.ask(question, patience_s)
+        return Asked(question=question, scored=scored, answer=answer, wording_s=wording_s)
+    better = Rewording(interview.improve, question)
+    answer = operator.ask(question, patience_s, better)
+    shown = better.wait(0.0) if answer.better_s is not None else None
+    if shown is None or answer.better_s is None:
+        return Asked(question=question, scored=scored, answer=answer, wording_s=wording_s)
+    return Asked(
+        question=shown,
+        scored=scored,
+        answer=answer,
+        wording_s=wording_s,
+        first_text=question.text,
+        better_s=wording_s + answer.better_s,
+    )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 from mintpilot.core.errors import DeviceError, InfeasibleError
@@ -19,6 +19,7 @@ from mintpilot.mission.endings import ended, home_stop, obey, stay_or_return
 from mintpilot.mission.eyes import Eyes
 from mintpilot.mission.flight import End, Pilot
 from mintpilot.mission.mind import Mind, Thinking, think
+from mintpilot.mission.rewording import Improve
 from mintpilot.reasoning.belief import prior_belief
 
 MAX_RETHINKS = 8
@@ -39,6 +40,12 @@ class Crew:
     judge: Judge | None = None
     """In a simulator, says how it really went."""
     word: Wording = word_question
+    improve: Improve | None = None
+    """Makes better words while the first ones are shown; None: nobody does."""
+    remarks: Callable[[], Sequence[str]] = tuple
+    """What went wrong with the words since it was last called, in sentences."""
+    language: str = "en"
+    language_model: str = "template"
     simulated: bool = False
     """True in a simulator only: baselines may then fly what is not known to be passable."""
     watch_map: bool = True
@@ -51,7 +58,16 @@ def fly_mission(crew: Crew) -> Verdict:
     """Flies one mission from the survey to its end. Whatever happens, the vehicle is left holding."""
     record = crew.recorder.record
     mission, task = crew.thinking.mission, crew.thinking.task
-    record(MissionStarted(mission=mission, task=task, seed=crew.seed, strategy=crew.strategy_name))
+    record(
+        MissionStarted(
+            mission=mission,
+            task=task,
+            seed=crew.seed,
+            strategy=crew.strategy_name,
+            language=crew.language,
+            language_model=crew.language_model,
+        )
+    )
     verdict = Verdict(outcome=Outcome.ABORTED, reason="The mission was broken off.")
     try:
         begun = time.perf_counter()
@@ -78,7 +94,7 @@ def _think_and_fly(crew: Crew, mind: Mind) -> Verdict:
         watch_map=crew.watch_map,
     )
     begun_s = crew.vehicle.state().time_s
-    interview = Interview(crew.operator, crew.recorder, thinking.settings, crew.word)
+    interview = Interview(crew.operator, crew.recorder, thinking.settings, crew.word, crew.improve, crew.remarks)
     why = "New things kept turning up in the way."
     for _ in range(MAX_RETHINKS):
         try:

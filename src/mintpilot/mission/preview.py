@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from mintpilot.core.errors import InfeasibleError
 from mintpilot.core.geometry import Vec3
@@ -53,6 +53,7 @@ def preview(
         InfeasibleError: nothing can be flown, whatever the answers are.
     """
     begun_s = clock()
+    alone = replace(parts, proposer=None)  # only what would be asked now is worth a language model's time
     left = [max_deliberations]
     complete = [True]
 
@@ -63,7 +64,7 @@ def preview(
                 return 0.0
             left[0] -= 1
             try:
-                thought = think(here, parts, start_m=start_m, endurance_s=endurance_s)
+                thought = think(here, alone, start_m=start_m, endurance_s=endurance_s)
             except InfeasibleError:
                 return 0.0
         if not isinstance(thought.decision, Ask):

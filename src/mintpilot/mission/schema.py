@@ -144,6 +144,15 @@ class CorrelationSpec(Spec):
     """Probability of each combination; those not named have none. They sum to 1."""
 
 
+class LanguageSpec(Spec):
+    """The language of questions, and who may help with words. What a model needs comes from the environment only."""
+
+    model: Name = "template"
+    """Language model by name: `template` (none), `endpoint`, `embedded`, or that of a plug-in; `--llm` overrides it."""
+    lang: Literal["en", "de", "fr", "es"] = "en"
+    """In which questions are asked; `--lang` overrides it."""
+
+
 class OperatorSpec(Spec):
     """How a scripted operator behaves."""
 
@@ -176,6 +185,8 @@ class MissionFile(Spec):
     """What the vehicle can do."""
     asking: AskingSpec = AskingSpec()
     """When to ask, and when to stop."""
+    language: LanguageSpec = LanguageSpec()
+    """In which language it asks, and with what language model, if any."""
     survey: SurveySpec | None = None
     """The flight that makes the map; not for worlds given as a map."""
     priors: PriorsSpec = PriorsSpec()

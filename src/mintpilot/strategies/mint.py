@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
+from mintpilot.core.geometry import Floats
 from mintpilot.core.mission import CriticalityRule
 from mintpilot.core.plan import Plan
 from mintpilot.core.ports import Ask, Decision, QueryObjective, Situation, Strategy
@@ -21,6 +24,7 @@ from mintpilot.strategies.flying import (
     questions_left,
     tree_of,
 )
+from mintpilot.strategies.proposals import gain_bound_bits, with_proposals
 
 ALTERNATIVES = 5
 """How many of the other cuts are told with the chosen one."""
@@ -43,6 +47,9 @@ class MintStrategy(Strategy):
            region that is not known to be passable, ask about that one or avoid it, whichever is cheaper on average.
         2. The operator is silent: fly the cautious plan.
         3. The budget is spent, or no cut is worth asking: fly the safe plan that loses least on average.
+
+        A proposer (a language model), where there is one, is asked for cuts only when the best of our own falls short
+        of what any cut could tell (`mintpilot.strategies.proposals.with_proposals`); the best by score wins.
         """
         mint = tree_of(situation)
         if mint.root.leaf is LeafReason.INFEASIBLE:
@@ -52,26 +59,34 @@ class MintStrategy(Strategy):
             return confirm_or_avoid(situation, mint, *settled)
         if situation.silent:
             return fly_cautiously(situation, mint, StopReason.SILENCE)
-        ranked = self._rank(situation, mint)
+        objective = self._objective or situation.objective
+        regret_s = regret_matrix(mint, situation.settings)
+        ranked = _rank(situation, mint, regret_s, objective)
+        bound_bits = gain_bound_bits(situation, mint, regret_s)
+        proposed: tuple[ScoredQuery, ...] = ()
+        if questions_left(situation):
+            ranked, proposed = with_proposals(situation, mint, regret_s, objective, ranked, bound_bits)
         gain = max((s.gain_bits for s in ranked), default=0.0)
         if not questions_left(situation):
             plan = best_safe_plan(situation, mint)
             return fly(situation, mint, plan, StopReason.BUDGET, best_gain_bits=gain)
         if not ranked or ranked[0].score <= 0:
             plan = best_safe_plan(situation, mint)
-            return fly(situation, mint, plan, StopReason.NO_GAIN, best_gain_bits=gain)
-        return Ask(scored=ranked[0], alternatives=ranked[1 : 1 + ALTERNATIVES], mint=mint)
-
-    def _rank(self, situation: Situation, mint: Mint) -> tuple[ScoredQuery, ...]:
-        queries = candidate_queries(mint, start_m=situation.problem.start_m, refused=situation.withdrawn)
-        return choose(
-            queries,
-            mint,
-            regret_matrix(mint, situation.settings),
-            self._objective or situation.objective,
-            situation.settings,
-            asked={query.id for query, _ in situation.asked},
+            return replace(fly(situation, mint, plan, StopReason.NO_GAIN, best_gain_bits=gain), proposed=proposed)
+        return Ask(
+            scored=ranked[0],
+            alternatives=ranked[1 : 1 + ALTERNATIVES],
+            mint=mint,
+            proposed=proposed,
+            bound_bits=bound_bits,
         )
+
+
+def _rank(situation: Situation, mint: Mint, regret_s: Floats, objective: QueryObjective) -> tuple[ScoredQuery, ...]:
+    """Our own cuts, best first."""
+    queries = candidate_queries(mint, start_m=situation.problem.start_m, refused=situation.withdrawn)
+    asked = {query.id for query, _ in situation.asked}
+    return choose(queries, mint, regret_s, objective, situation.settings, asked=asked)
 
 
 def _settled(situation: Situation, mint: Mint) -> tuple[Plan, StopReason] | None:

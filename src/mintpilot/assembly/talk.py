@@ -1,0 +1,142 @@
+"""The language of one mission: who reads the instruction and answers, who words questions, who may propose cuts."""
+
+from __future__ import annotations
+
+from contextlib import AbstractContextManager
+from dataclasses import dataclass
+
+from mintpilot.assembly.guarded_model import GuardedModel
+from mintpilot.assembly.registry import load
+from mintpilot.core.geometry import Vec3
+from mintpilot.core.ports import LanguageModel, Proposer
+from mintpilot.core.query import Meaning, Query, Question
+from mintpilot.core.task import Task
+from mintpilot.core.tree import Mint
+from mintpilot.elicitation.wording import word_question
+from mintpilot.language.answers import Reading, Understood
+from mintpilot.language.instruction import parse_instruction
+from mintpilot.language.proposing import propose_cuts
+from mintpilot.language.reading import READING_S, parse_with_model, understand_with_model
+from mintpilot.language.short_answers import understand_in
+from mintpilot.language.translating import ENGLISH, wording_for
+from mintpilot.language.wording import ModelWording, Wording
+from mintpilot.mission.rewording import Improve
+from mintpilot.mission.schema import LanguageSpec
+
+TEMPLATE = "template"
+"""Name of the model that is none."""
+SCREEN_S = 8.0
+"""Better words for a screen may take this long: the first ones stand there meanwhile. Who speaks waits far shorter."""
+
+
+class Talk(AbstractContextManager["Talk"]):
+    """Everything about words that a crew needs; closes its model in the end.
+
+    Whatever the model does, each of these works without it: by template and by rules.
+
+    Args:
+        lang: in which questions are asked: ``en``, ``de``, ``fr`` or ``es``.
+        model: who may help; None: nobody.
+        name: the model's registered name.
+
+    Raises:
+        UnknownNameError: another language.
+    """
+
+    def __init__(self, *, lang: str = ENGLISH, model: LanguageModel | None = None, name: str = TEMPLATE) -> None:
+        self.lang = lang
+        self.model_name = name
+        self._model = None if model is None else GuardedModel(model, name)
+        worded = wording_for(word_question, language=lang)
+        self.word: Wording = worded
+        """Words a cut at once, by template."""
+        self.improve: Improve | None = None
+        """Makes better words while those are shown; None: nobody does. Only English words can be checked."""
+        self.proposer: Proposer | None = None
+        """May propose cuts; None: nobody does."""
+        if self._model is not None:
+            self.proposer = ModelProposer(self._model)
+            if lang == ENGLISH:
+                wording = ModelWording(template=worded, model=self._model, timeout_s=SCREEN_S)
+                wording.warm()
+                self.improve = wording.improve
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def parse(self, text: str, home_m: Vec3 | None = None) -> Task:
+        """The instruction as a task: by rules, and what they refuse with the model's help.
+
+        Raises:
+            InputError: neither way gives a task; the rules' own reason.
+        """
+        if self._model is None:
+            return parse_instruction(text, home_m=home_m)
+        return parse_with_model(text, self._model, home_m=home_m)
+
+    def understand(self, text: str, question: Question, timeout_s: float) -> Meaning:
+        """What a free answer means: by rules, and what they do not know with the model's help, in English only."""
+        understood = understand_in(text, question, self.lang)
+        if understood.reading is Reading.OTHER and self._model is not None and self.lang == ENGLISH:
+            # The model is asked twice.
+            each_s = min(READING_S, timeout_s / 2)
+            understood = understand_with_model(text, question, self._model, timeout_s=each_s)
+        return _meaning(understood)
+
+    def take_remarks(self) -> tuple[str, ...]:
+        """What went wrong with the model since it was last called, in sentences; each is told once."""
+        return () if self._model is None else self._model.take_remarks()
+
+    def close(self) -> None:
+        """Closes the model. Safe to call again."""
+        model, self._model = self._model, None
+        if model is not None:
+            self.improve, self.proposer = None, None
+            model.close()
+
+
+@dataclass(frozen=True, slots=True)
+class ModelProposer(Proposer):
+    """A language model that proposes cuts in the predicate language."""
+
+    model: GuardedModel
+
+    @property
+    def name(self) -> str:
+        """See `Proposer.name`."""
+        return self.model.name
+
+    def propose(self, mint: Mint) -> tuple[Query, ...]:
+        """See `Proposer.propose`."""
+        return propose_cuts(self.model, mint).queries
+
+
+def talk_for(spec: LanguageSpec, *, llm: str | LanguageModel | None = None, lang: str | None = None) -> Talk:
+    """The language of a mission: as its file says, where nobody says otherwise.
+
+    Args:
+        spec: the mission file's part about language.
+        llm: the name of a language model, or one that was made already; None: that of the file.
+        lang: the language in which questions are asked; None: that of the file.
+
+    Raises:
+        UnknownNameError: nobody registered that model, or the language is not known.
+        InputError: the model needs an address, a name or a file that is not given, or it is broken.
+        MissingPartError: the model needs a part that is not installed.
+    """
+    spoken = lang if lang is not None else spec.lang
+    wording_for(word_question, language=spoken)  # a wrong language is told before a model is loaded
+    if llm is not None and not isinstance(llm, str):
+        return Talk(lang=spoken, model=llm, name=type(llm).__name__)
+    name = llm if llm is not None else spec.model
+    made = load("language", name)
+    return Talk(lang=spoken, model=None if name == TEMPLATE else made(), name=name)
+
+
+def _meaning(understood: Understood) -> Meaning:
+    if understood.reading is Reading.COMMAND:
+        return Meaning(reply=None, command=understood.command, by=understood.by)
+    if understood.reading is Reading.OTHER:
+        return Meaning(reply=None, by=understood.by)
+    also = () if understood.also is None else ((Query(literals=(understood.also,)), True),)
+    return Meaning(reply=understood.reply, also=also, by=understood.by)

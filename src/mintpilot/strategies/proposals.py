@@ -1,0 +1,97 @@
+"""Cuts from outside, e.g. of a language model: asked for where they can help, checked, and scored like all others."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from mintpilot.core.geometry import Floats
+from mintpilot.core.ports import QueryObjective, Situation
+from mintpilot.core.query import Query
+from mintpilot.core.tree import Mint, ScoredQuery
+from mintpilot.elicitation.candidates import candidate_queries, gap_literals
+from mintpilot.elicitation.choose import choose, query_situation
+from mintpilot.elicitation.sentences import is_sayable
+from mintpilot.elicitation.truth import truth_row
+from mintpilot.reasoning.entropy import entropy_bits
+
+MARGIN_BITS = 0.05
+"""A cut that is so near to the bound on gain leaves nothing worth waiting for."""
+MOST = 20
+"""Proposals looked at."""
+
+
+def gain_bound_bits(situation: Situation, mint: Mint, regret_s: Floats) -> float:
+    """What no cut whatever can pass: one bit less the noise of answers, and the entropy of the plan classes, bits.
+
+    Args:
+        situation: for the settings.
+        mint: the tree.
+        regret_s: from `mintpilot.reasoning.situation.regret_matrix`.
+    """
+    seen = query_situation((), mint, regret_s, situation.settings)
+    masses = np.bincount(seen.class_of, weights=seen.probability)
+    error = situation.settings.answer_error
+    noise = entropy_bits(np.array([error, 1 - error]))
+    return float(max(0.0, min(1.0 - noise, entropy_bits(masses))))
+
+
+def with_proposals(
+    situation: Situation,
+    mint: Mint,
+    regret_s: Floats,
+    objective: QueryObjective,
+    own: tuple[ScoredQuery, ...],
+    bound_bits: float,
+) -> tuple[tuple[ScoredQuery, ...], tuple[ScoredQuery, ...]]:
+    """All cuts, best first, and those among them that the proposer brought.
+
+    The proposer is asked only where the best own cut tells less than the bound on gain, by more than `MARGIN_BITS`:
+    elsewhere nothing better exists, and no time is lost. All cuts are then scored together by the same objective; the
+    best by score wins, whoever proposed it.
+    """
+    proposer = situation.proposer
+    best_bits = max((s.gain_bits for s in own), default=0.0)
+    if proposer is None or best_bits >= bound_bits - MARGIN_BITS:
+        return own, ()
+    sound = sound_proposals(situation, mint, proposer.propose(mint))
+    if not sound:
+        return own, ()
+    asked = {query.id for query, _ in situation.asked}
+    every = [*(s.query for s in own), *sound]
+    scored = choose(every, mint, regret_s, objective, situation.settings, asked=asked)
+    theirs = {query.id for query in sound}
+    named = tuple(replace(s, proposed_by=proposer.name) if s.query.id in theirs else s for s in scored)
+    return named, tuple(s for s in named if s.query.id in theirs)
+
+
+def sound_proposals(situation: Situation, mint: Mint, proposed: Sequence[Query]) -> tuple[Query, ...]:
+    """Those proposals that may be asked and are new.
+
+    Each part must be in the predicate language for its gap, with the values that it says; the whole must be sayable in
+    one short sentence and divide what the tree holds. What was asked or withdrawn, and what divides like a cut of our
+    own (asked, withdrawn or still to be asked), is left out.
+    """
+    gaps = {gap.id: gap for gap in mint.belief.gaps}
+    start_m = situation.problem.start_m
+    language = {name: set(gap_literals(gap, start_m)) for name, gap in gaps.items()}
+    spent = {query.id for query, _ in situation.asked} | situation.withdrawn
+    known = {_key(query, mint) for query in candidate_queries(mint, start_m=start_m)}
+    sound: list[Query] = []
+    for query in proposed[:MOST]:
+        spoken = all(x.gap in gaps and x in language[x.gap] for x in query.literals)
+        if not spoken or query.id in spent or not is_sayable(query, gaps):
+            continue
+        key = _key(query, mint)
+        if any(key) and key not in known:
+            known.add(key)
+            sound.append(query)
+    return tuple(sound)
+
+
+def _key(query: Query, mint: Mint) -> bytes:
+    """How a cut divides what the tree holds: equal for cuts that divide alike; all zero where it does not divide."""
+    row = truth_row(query, mint.belief)[mint.support]
+    return bytes(np.packbits(row ^ row[:1]))
