@@ -3,20 +3,24 @@
 from __future__ import annotations
 
 import dataclasses
+import io
 import json
 
 import numpy as np
 import pytest
+from rich.console import Console
 
 from mintpilot.core import events as ev
 from mintpilot.core.errors import RecordError
-from mintpilot.core.query import Reply
+from mintpilot.core.query import Literal, Query, Reply, Saying, SayingKind
 from mintpilot.recording.build import build_record, flight_record
 from mintpilot.recording.event_json import MAX_ROWS, event_line
 from mintpilot.recording.history import History
 from mintpilot.recording.in_memory import HistoryRecorder
 from mintpilot.recording.record import MissionRecord, read_record
+from mintpilot.recording.report import report_html
 from mintpilot.recording.run_summary import RunSummary, summary
+from mintpilot.recording.terminal_report import print_report
 
 from .conftest import flight, way
 
@@ -146,3 +150,49 @@ def test_long_paths_are_thinned_in_the_events_only():
     rows = line["log"]["position_m"]
     assert len(log.position_m) > MAX_ROWS == len(rows)
     assert np.allclose([rows[0], rows[-1]], log.position_m[[0, -1]], atol=1e-3)
+
+
+def _worded(story):
+    """The same mission with a language model at work: better words, a proposed cut, an answer that says more."""
+    target = next(e for e in story if isinstance(e, ev.Deliberated)).gaps[1]
+    said = Saying(kind=SayingKind.VALUE, value=target.values[0])
+    other = Query(literals=(Literal(gap=target.id, values=frozenset({target.values[0]}), saying=said),))
+    for event in story:
+        if isinstance(event, ev.Asked):
+            answer = dataclasses.replace(event.answer, also=((other, True),), understood_by="model")
+            better = dataclasses.replace(event.question, text="Is the <b>smoke</b> safe?", worded_by="tiny")
+            first = event.question.text
+            event = dataclasses.replace(event, question=better, answer=answer, first_text=first, better_s=0.8)
+        elif isinstance(event, ev.Deliberated) and event.chosen is not None:
+            poor = dataclasses.replace(event.chosen, query=other, gain_bits=0.25, score=0.25, proposed_by="tiny")
+            event = dataclasses.replace(event, proposed=(poor,), bound_bits=1.0)
+        elif isinstance(event, ev.MissionStarted):
+            event = dataclasses.replace(event, language="en", language_model="endpoint")
+        yield event
+
+
+def test_what_a_language_model_did_is_in_the_record_and_in_the_report(make_events, tmp_path):
+    record = record_of(_worded(make_events()))
+    (question,) = record.questions
+    assert question.text == "Is the <b>smoke</b> safe?"
+    assert question.first_text == "Can I fly through the grey smoke near the gate?"
+    assert (question.worded_by, question.better_s, question.understood_by) == ("tiny", 0.8, "model")
+    assert question.also == ("“the medicine box” means the box-1",)
+    (cut,) = record.rounds[0].proposals
+    assert (cut.proposed_by, cut.gain_bits, cut.asked) == ("tiny", 0.25, False)
+    assert (record.rounds[0].best_gain_bits, record.rounds[0].bound_bits) == (1.0, 1.0)
+    assert record.language_model == "endpoint"
+    assert MissionRecord.model_validate_json(record.model_dump_json()) == record
+    report = " ".join(report_html(record, tmp_path).split())
+    assert "Is the &lt;b&gt;smoke&lt;/b&gt; safe?" in report
+    for words in ("Shown first as", "these words came from tiny", "The answer also said", "proposed to ask"):
+        assert words in report
+    printed = io.StringIO()
+    print_report(record, Console(file=printed, width=100))
+    assert "also said: “the medicine box” means the box-1" in printed.getvalue()
+
+
+def test_without_a_model_the_report_says_nothing_of_one(make_events, tmp_path):
+    report = report_html(record_of(make_events()), tmp_path)
+    assert "Shown first as" not in report
+    assert "proposed to ask" not in report

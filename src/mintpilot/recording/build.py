@@ -22,6 +22,7 @@ from mintpilot.core.tree import Certificate, GapAccount
 from mintpilot.recording.history import History
 from mintpilot.recording.record import (
     CertificateRecord,
+    CutRecord,
     FlightRecord,
     GapRecord,
     MissionRecord,
@@ -32,7 +33,7 @@ from mintpilot.recording.record import (
     ValueRecord,
 )
 from mintpilot.recording.tree_data import Told, class_records, tree_record
-from mintpilot.recording.words import say
+from mintpilot.recording.words import say, say_query
 
 _UNDECIDED = "The mission ended before this was decided."
 
@@ -58,6 +59,8 @@ def build_record(history: History, *, run_dir: str = "", unfinished: str = "") -
         name=started.mission.name if started else "",
         instruction=started.mission.instruction if started else "",
         strategy=started.strategy if started else "",
+        language=started.language if started else "en",
+        language_model=started.language_model if started else "template",
         outcome=ended.verdict.outcome if ended else Outcome.ABORTED,
         reason=ended.verdict.reason if ended else unfinished or "The mission was not finished.",
         complete=ended is not None,
@@ -65,8 +68,8 @@ def build_record(history: History, *, run_dir: str = "", unfinished: str = "") -
         settings=_settings(started.mission) if started else {},
         versions=versions(),
         gaps=gap_records(history.gaps, history.chosen, history.asked_gaps),
-        questions=tuple(map(_question, history.asked)),
-        rounds=tuple(map(_round, history.deliberations)),
+        questions=tuple(_question(asked, history.gaps) for asked in history.asked),
+        rounds=tuple(_round(deliberated) for deliberated in history.deliberations),
         tree=tree_record(mint, history.gaps, told) if mint else None,
         plan_classes=class_records(mint, history.gaps, told) if mint else (),
         certificate=_certificate(certificate) if certificate else None,
@@ -152,7 +155,7 @@ def _gap(gap_id: str, gap: KnowledgeGap | None, account: GapAccount | None, aske
     )
 
 
-def _question(asked: Asked) -> QuestionRecord:
+def _question(asked: Asked, gaps: Sequence[KnowledgeGap]) -> QuestionRecord:
     question, scored, answer = asked.question, asked.scored, asked.answer
     return QuestionRecord(
         text=question.text,
@@ -171,17 +174,37 @@ def _question(asked: Asked) -> QuestionRecord:
         command=answer.command,
         answer_text=answer.text,
         latency_s=answer.latency_s,
+        first_text=asked.first_text,
+        better_s=asked.better_s,
+        understood_by=answer.understood_by,
+        also=tuple(f"{'' if yes else 'not: '}{say_query(cut, gaps)}" for cut, yes in answer.also),
+        proposed_by=scored.proposed_by,
     )
 
 
 def _round(deliberated: Deliberated) -> RoundRecord:
+    chosen = deliberated.chosen
+    scored = [*([chosen] if chosen else []), *deliberated.alternatives, *deliberated.proposed]
     return RoundRecord(
         round=deliberated.round,
         seconds=deliberated.seconds,
         gaps=len(deliberated.gaps),
         nodes=deliberated.mint.nodes if deliberated.mint else 0,
-        query=deliberated.chosen.query.id if deliberated.chosen else "",
+        query=chosen.query.id if chosen else "",
         alternatives=tuple((scored.query.id, scored.gain_bits) for scored in deliberated.alternatives),
+        proposals=tuple(
+            CutRecord(
+                query=cut.query.id,
+                words=say_query(cut.query, deliberated.gaps),
+                proposed_by=cut.proposed_by,
+                gain_bits=cut.gain_bits,
+                score=cut.score,
+                asked=chosen is not None and cut.query.id == chosen.query.id,
+            )
+            for cut in deliberated.proposed
+        ),
+        best_gain_bits=max((cut.gain_bits for cut in scored), default=None),
+        bound_bits=deliberated.bound_bits,
     )
 
 

@@ -86,11 +86,12 @@ class History:
 
     @property
     def replies(self) -> tuple[tuple[Query, bool], ...]:
-        """The cuts that were answered with yes or no, in order."""
+        """The cuts that were answered with yes or no, in order, with what was said beyond them."""
         return tuple(
-            (a.question.query, a.answer.reply is Reply.YES)
+            reply
             for a in self.asked
             if a.answer.reply in (Reply.YES, Reply.NO) and a.answer.command is None
+            for reply in ((a.question.query, a.answer.reply is Reply.YES), *a.answer.also)
         )
 
     @property

@@ -86,6 +86,16 @@ class QuestionRecord(Part):
     answer_text: str
     """As it was given: data, never an instruction."""
     latency_s: Figure
+    first_text: str = ""
+    """The words that were shown first, where better ones (``text``) followed; else empty."""
+    better_s: Figure = None
+    """From the cut to the better words, seconds; null where there were none."""
+    understood_by: str = ""
+    """Who made a reply of free words: ``rules`` or ``model``; empty where nobody had to."""
+    also: tuple[str, ...] = ()
+    """What the answer said beyond the question, as it was understood, in plain words."""
+    proposed_by: str = "enumeration"
+    """Who proposed the cut: our own enumeration, or a language model by name."""
 
 
 class TreeRecord(Part):
@@ -148,6 +158,20 @@ class CertificateRecord(Part):
     """Null: not bounded."""
 
 
+class CutRecord(Part):
+    """A cut that was proposed from outside, scored like all others."""
+
+    query: str
+    """Its stable id."""
+    words: str
+    """The same in plain words: what Yes would say."""
+    proposed_by: str
+    gain_bits: Figure
+    score: Figure
+    asked: bool
+    """Whether it was the best, and so the one that was asked."""
+
+
 class RoundRecord(Part):
     """One deliberation."""
 
@@ -158,7 +182,13 @@ class RoundRecord(Part):
     query: str = ""
     """Id of the cut that was chosen; empty where the asking stopped."""
     alternatives: tuple[tuple[str, Figure], ...] = ()
-    """The next best cuts with their gains in bits."""
+    """The next best cuts with their gains in bits. Those not among ``proposals`` are our own."""
+    proposals: tuple[CutRecord, ...] = ()
+    """What a language model proposed and was sound, best first."""
+    best_gain_bits: Figure = None
+    """Of all cuts that were scored, the most that one tells; null where none was."""
+    bound_bits: Figure = None
+    """No cut whatever could tell more; null where that was not worked out."""
 
 
 class FlightRecord(Part):
@@ -203,6 +233,10 @@ class MissionRecord(Part):
     name: str
     instruction: str
     strategy: str
+    language: str = "en"
+    """In which it was asked."""
+    language_model: str = "template"
+    """Who could help with words; ``template``: nobody."""
     outcome: Outcome
     reason: str
     complete: bool

@@ -93,6 +93,8 @@ def _question(question: QuestionRecord) -> Iterator[Text]:
     arrow = f" → {printable(consequence)}" if consequence and question.command is None else ""
     facts = f"  (after {number(question.latency_s, 's')}, {number(question.gain_bits, 'bit', 2)})"
     yield Text.assemble("  ", (said, _STYLES[question.reply]), arrow, (facts, "dim"))
+    for also in question.also:
+        yield _plain(f"  also said: {also}")
 
 
 def _decided(record: MissionRecord) -> RenderableType:

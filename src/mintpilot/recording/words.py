@@ -6,6 +6,7 @@ from collections.abc import Iterable
 
 from mintpilot.core.gap import BLOCKED, PASSABLE, PRESENT, Assumptions, GapKind, KnowledgeGap
 from mintpilot.core.mission import Outcome
+from mintpilot.core.query import Combine, Query
 from mintpilot.core.tree import LeafReason, StopReason
 
 LEAF_WORDS: dict[LeafReason, str] = {
@@ -68,6 +69,16 @@ def say_assumptions(given: Assumptions, gaps: Iterable[KnowledgeGap]) -> str:
         if gap_id not in known or len(values) < len(known[gap_id].values)
     ]
     return "; ".join(clauses) or "nothing assumed"
+
+
+def say_query(query: Query, gaps: Iterable[KnowledgeGap]) -> str:
+    """What a Yes to the cut says; parts about gaps that are not given are said by their ids."""
+    known = {gap.id: gap for gap in gaps}
+    clauses = [
+        say(known[x.gap], x.values) if x.gap in known else f"{x.gap}: {' or '.join(sorted(x.values))}"
+        for x in query.literals
+    ]
+    return (" and " if query.combine is Combine.ALL else " or ").join(clauses)
 
 
 def printable(text: str) -> str:
