@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 from mintpilot.core.errors import LimitError
@@ -68,75 +69,114 @@ class _Programme:
         self.shared = bool((self.good[:, None, :] @ self.member > 0).sum(axis=2).max(initial=0) > 1)
         self.slack = _fano(settings.alpha, len(classes))
         self.max_states = max_states
-        self.values: dict[bytes, float] = {}
+        self.values: dict[bytes, tuple[float, bool]] = {}
+        """By support: expected questions, and whether that is exact or a lower bound."""
 
     def scores(self) -> Floats:
         everything = np.ones(self.mass.size, bool)
         if self.bounds(everything[None, :])[0] == 0:
             return np.zeros(len(self.row_of))
-        least, _ = self.search(everything)
+        least, _, _ = self.search(everything)
         worth = np.zeros(len(self.cuts))
         for number, cut in enumerate(self.cuts):
             if cut.any() and not cut.all():
-                worth[number] = 1.0 / least[np.packbits(cut).tobytes()]
+                worth[number] = 1.0 / least[np.packbits(cut if cut[0] else ~cut).tobytes()]
         return worth[self.row_of.ravel()]
 
-    def value(self, support: Bools) -> float:
-        """Fewest expected questions from this support on."""
+    def value(self, support: Bools, limit: float) -> float:
+        """Fewest expected questions from this support on; where that is ``limit`` or more, a lower bound of it."""
         key = np.packbits(support).tobytes()
-        if key in self.values:
-            return self.values[key]
+        least, exact = self.values.get(key, (0.0, False))
+        if exact or least >= limit:
+            return least
         if len(self.values) >= self.max_states:
             raise LimitError(
                 f"objective 'optimal' would look at more than {self.max_states} posterior supports; "
                 "use 'information-gain' or 'ec2', or raise the bound"
             )
-        best = 0.0 if self.bounds(support[None, :])[0] == 0 else self.search(support)[1]
-        self.values[key] = best
-        return best
+        least = float(self.bounds(support[None, :])[0])
+        exact = least == 0
+        if 0 < least < limit:
+            _, found, exact = self.search(support, limit)
+            least = max(least, found)
+        self.values[key] = least, exact
+        return least
 
-    def search(self, support: Bools) -> tuple[dict[bytes, float], float]:
-        """Expected questions for each cut asked first, by its yes part, and the least of them.
+    def search(self, support: Bools, limit: float = float("inf")) -> tuple[dict[bytes, float], float, bool]:
+        """Expected questions for each cut asked first, by its yes part; the least of them; whether that is exact.
 
-        For cuts that are no better than the best one the figure may be a lower bound, but is always above the best.
+        For cuts that are no better than the best one, or than ``limit``, the figure may be a lower bound, but is always
+        above the best.
         """
         yes = self.cuts & support
         count = yes.sum(axis=1)
-        yes = np.unique(yes[(count > 0) & (count < support.sum())], axis=0)
+        yes = yes[(count > 0) & (count < support.sum())]
+        if not len(yes):
+            return {}, 0.0, True
+        # A cut and its opposite are one: the yes part is the one that holds the first hypothesis.
+        yes = np.unique(np.where(yes[:, np.argmax(support)][:, None], yes, support & ~yes), axis=0)
         no = support & ~yes
         share = yes @ self.mass / self.mass[support].sum()
         below_yes, below_no = self.bounds(yes), self.bounds(no)
         least = 1.0 + share * below_yes + (1 - share) * below_no
-        best, exact = float("inf"), np.zeros(len(yes), bool)
+        best, exact = limit, np.zeros(len(yes), bool)
         # The lowest bound first; among equal bounds the most even cut.
         for i in np.lexsort((np.abs(share - 0.5), np.round(least, 9))):
-            if least[i] >= best - _ROUNDING:
-                continue
-            least[i] += share[i] * (self.value(yes[i]) - below_yes[i])
+            for part, weight, below in ((yes[i], share[i], below_yes[i]), (no[i], 1 - share[i], below_no[i])):
+                if least[i] >= best - _ROUNDING:
+                    break
+                least[i] += weight * (self.value(part, below + (best - least[i]) / weight) - below)
             if least[i] < best - _ROUNDING:
-                least[i] += (1 - share[i]) * (self.value(no[i]) - below_no[i])
-                best, exact[i] = min(best, float(least[i])), True
+                best, exact[i] = float(least[i]), True
+        found = float(least.min())
         # What was not followed to its end is no better than the best, but must not look as good.
         least = np.where(exact, least, np.maximum(least, best) + _BEHIND)
         keys = [np.packbits(row).tobytes() for row in yes]
-        return dict(zip(keys, least.tolist(), strict=True)), best if len(yes) else 0.0
+        return dict(zip(keys, least.tolist(), strict=True)), best if exact.any() else found, bool(exact.any())
 
     def bounds(self, supports: Bools) -> Floats:
-        """For each support (s, hypotheses): 0 where asking may stop, else a lower bound on the expected questions."""
+        """For each support (s, hypotheses): 0 where asking may stop, else a lower bound on the expected questions.
+
+        Asking ends in parts that one plan covers, or all but ``alpha`` of which one class covers. However the parts are
+        cut, those of n covers weigh no more than the n heaviest covers, overlaps counted twice; so no way of asking
+        beats Huffman's code for those.
+        """
         weight = supports * self.mass
         total = weight.sum(axis=1)
         by_class = weight @ self.member
         covered = supports @ self.good.T >= supports.sum(axis=1)[:, None]
         stop = (by_class.max(axis=1) >= self.enough * total - _ROUNDING) | covered.any(axis=1)
-        held = np.maximum(by_class.max(axis=1), (weight @ self.good.T).max(axis=1, initial=0.0))
-        # No support at which asking stops is heavier than this, and questions tell at most a bit each.
-        bits = np.log2(np.maximum(total * self.enough / np.maximum(held, _ROUNDING), 1.0))
+        least = huffman(np.hstack([by_class / self.enough, weight @ self.good.T]) / total[:, None])
         if not self.shared:
             share = by_class / total[:, None]
             entropy = -(share * np.log2(np.where(share > 0, share, 1.0))).sum(axis=1)
-            bits = np.maximum(bits, entropy - self.slack)
-        least: Floats = np.where(stop, 0.0, np.maximum(1.0, bits))
-        return least
+            least = np.maximum(least, entropy - self.slack)
+        bound: Floats = np.where(stop, 0.0, np.maximum(1.0, least))
+        return bound
+
+
+@njit(cache=True)
+def huffman(weights: Floats) -> Floats:
+    """For each row (s, n) the mean length of Huffman's code for its heaviest weights, cut off at a sum of 1."""
+    out = np.zeros(len(weights))
+    for row in range(len(weights)):
+        sizes = np.sort(weights[row])[::-1]
+        count, left = 0, 1.0
+        while count < sizes.size and left > 1e-9:
+            sizes[count] = min(sizes[count], left)
+            left -= sizes[count]
+            count += 1
+        while count > 1:
+            # The two lightest stand at the end; their sum goes where it belongs.
+            joined = sizes[count - 1] + sizes[count - 2]
+            out[row] += joined
+            count -= 1
+            at = count - 1
+            while at > 0 and sizes[at - 1] < joined:
+                sizes[at] = sizes[at - 1]
+                at -= 1
+            sizes[at] = joined
+    return out
 
 
 def _indistinct(cuts: NDArray[Any], class_of: NDArray[Any]) -> Floats:
