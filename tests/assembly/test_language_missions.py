@@ -1,0 +1,135 @@
+"""Whole missions with a language model behind a real server on this machine."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from tests.assembly.llm_server import LlmServer, friendly
+
+from mintpilot.assembly import api
+from mintpilot.assembly.api import run_mission
+from mintpilot.cli.demos import demo_path
+from mintpilot.core.events import Asked, Event
+from mintpilot.core.mission import Outcome
+from mintpilot.core.ports import SPEAKING_S, BetterWords, Operator, Understand
+from mintpilot.core.query import Answer, Question
+from mintpilot.recording.record import read_record
+
+KEY = "key-that-must-not-leak-1f7a"
+MEDICINE = demo_path("medicine")
+
+
+@pytest.fixture
+def server(monkeypatch: pytest.MonkeyPatch) -> Iterator[LlmServer]:
+    running = LlmServer(lambda prompt: friendly(prompt) or f"{{}} {KEY}")
+    monkeypatch.setenv("MINTPILOT_LLM_URL", running.url)
+    monkeypatch.setenv("MINTPILOT_LLM_MODEL", "tiny")
+    monkeypatch.setenv("MINTPILOT_LLM_KEY", KEY)
+    yield running
+    running.shut_down()
+
+
+class Listener(Operator):
+    """Knows what the scripted operator knows, and keeps what it was told."""
+
+    def __init__(self, knows: Operator) -> None:
+        self._knows = knows
+        self.told: list[str] = []
+
+    def ask(self, question: Question, patience_s: float, better: BetterWords | None = None) -> Answer:
+        return self._knows.ask(question, patience_s, better)
+
+    def tell(self, text: str) -> None:
+        self.told.append(text)
+
+
+def test_better_words_are_asked_and_told_apart_from_the_first_ones(server: LlmServer, tmp_path: Path) -> None:
+    events: list[Event] = []
+    record = run_mission(MEDICINE, vehicle="kinematic", llm="endpoint", out=tmp_path / "run", progress=events.append)
+    assert record.outcome is Outcome.SUCCESS
+    assert record.language_model == "endpoint"
+    first = record.questions[0]
+    assert (first.text, first.worded_by) == ("Is the box that you mean cylindrical?", "tiny")
+    assert first.first_text == "Is it one of the cylindrical boxes?"
+    assert first.wording_s is not None
+    assert first.better_s is not None
+    assert first.wording_s < first.better_s < first.wording_s + SPEAKING_S + 1
+    assert not [n for n in record.notices if n.kind == "language"]
+    template = run_mission(MEDICINE, vehicle="kinematic")
+    assert [(q.query, q.yes_means, q.no_means) for q in template.questions] == [
+        (q.query, q.yes_means, q.no_means) for q in record.questions
+    ]
+    assert template.flight == record.flight
+
+
+def test_the_key_is_sent_but_kept_nowhere(server: LlmServer, tmp_path: Path) -> None:
+    record = run_mission(MEDICINE, vehicle="kinematic", seed=1, llm="endpoint", out=tmp_path / "run")
+    assert record.outcome is Outcome.SUCCESS
+    assert f"Bearer {KEY}" in server.keys
+    files = [path for path in (tmp_path / "run").rglob("*") if path.is_file()]
+    assert len(files) > 3
+    assert not [path for path in files if KEY.encode() in path.read_bytes()]
+    assert read_record(tmp_path / "run").questions == record.questions
+
+
+def test_a_server_that_goes_away_in_mid_mission_is_told_once_and_the_mission_goes_on(
+    server: LlmServer, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    listeners: list[Listener] = []
+
+    def gone_after_one(event: Event) -> None:
+        if isinstance(event, Asked):
+            server.shut_down()
+
+    scripted = api.scripted_operator
+    monkeypatch.setattr(
+        api, "scripted_operator", lambda *given: listeners.append(Listener(scripted(*given))) or listeners[0]
+    )
+    record = run_mission(MEDICINE, vehicle="kinematic", llm="endpoint", progress=gone_after_one)
+    assert record.outcome is Outcome.SUCCESS
+    assert [q.worded_by for q in record.questions] == ["tiny", "template", "template"]
+    notices = [n.text for n in record.notices if n.kind == "language"]
+    assert len(notices) == 1
+    assert "goes on with templates" in notices[0]
+    assert listeners[0].told == notices
+
+
+def test_a_server_that_was_never_there_costs_words_only(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("MINTPILOT_LLM_URL", "http://127.0.0.1:9/v1")
+    monkeypatch.setenv("MINTPILOT_LLM_MODEL", "tiny")
+    record = run_mission(MEDICINE, vehicle="kinematic", llm="endpoint")
+    assert record.outcome is Outcome.SUCCESS
+    assert [q.worded_by for q in record.questions] == ["template"] * 3
+    assert len([n for n in record.notices if n.kind == "language"]) == 1
+
+
+class Talker(Operator):
+    """Says in free words what it is told to say, one utterance a question."""
+
+    def __init__(self, understand: Understand, *utterances: str) -> None:
+        self._understand, self._utterances = understand, iter(utterances)
+
+    def ask(self, question: Question, patience_s: float, better: BetterWords | None = None) -> Answer:
+        text = next(self._utterances)
+        meaning = self._understand(text, question, patience_s)
+        assert meaning.reply is not None
+        return Answer(reply=meaning.reply, latency_s=0.0, text=text, also=meaning.also, understood_by=meaning.by)
+
+    def tell(self, text: str) -> None:
+        """Nobody is there."""
+
+
+def test_what_an_answer_says_beyond_the_question_saves_questions(tmp_path: Path) -> None:
+    plain = run_mission(MEDICINE, vehicle="kinematic")
+    said = "no, the small black cubic one"
+    record = run_mission(
+        MEDICINE, vehicle="kinematic", operator=lambda understand: Talker(understand, said), out=tmp_path / "run"
+    )
+    assert record.outcome is Outcome.SUCCESS, record.reason
+    assert len(record.questions) == 1 < len(plain.questions)
+    (question,) = record.questions
+    assert question.answer_text == said
+    assert "small black cubic box" in question.also[0]
+    assert "The answer also said" in (tmp_path / "run" / "report.html").read_text()
