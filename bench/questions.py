@@ -25,6 +25,7 @@ from mintpilot.assembly.registry import load
 from mintpilot.core.errors import LimitError
 from mintpilot.core.mission import AskingSettings
 from mintpilot.core.ports import Strategy
+from mintpilot.elicitation.objectives import Optimal
 from mintpilot.strategies.exhaustive import ExhaustiveStrategy
 from mintpilot.strategies.gap_by_gap import GapByGapStrategy
 from mintpilot.strategies.mint import MintStrategy
@@ -37,8 +38,11 @@ SETTINGS = AskingSettings(delta_c_s=1.0, alpha=0.0, goal_entropy_bits=0.0)
 GAMES = {"information-gain": 1000, "ec2": 200}
 WRONG = 0.1
 
+MAX_STATES = 100_000
+"""Bound on the exact programme here; in a mission it is lower, since somebody waits."""
+
 METHODS: dict[str, Callable[[], Strategy]] = {
-    "optimal": partial(MintStrategy, load("objective", "optimal")()),
+    "optimal": partial(MintStrategy, Optimal(max_states=MAX_STATES)),
     "information-gain": partial(MintStrategy, load("objective", "information-gain")()),
     "ec2": partial(MintStrategy, load("objective", "ec2")()),
     "value-of-information": partial(MintStrategy, load("objective", "value-of-information")()),

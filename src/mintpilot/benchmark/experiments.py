@@ -42,8 +42,6 @@ GAPS = (
 )
 """`information-gain` is `mint` with its defaults."""
 MOST_GAPS = 8
-MOST_OPTIMAL = 5
-"""Beyond so many gaps the exact programme passes its bound on states in some worlds."""
 CONDITIONS: tuple[tuple[str, Condition], ...] = (
     ("5 % wrong answers", Condition(answer_error=0.05)),
     ("10 % wrong answers", Condition(answer_error=0.10)),
@@ -122,7 +120,7 @@ def versions() -> dict[str, str]:
 def _gap_cell(name: str, k: int, condition: Condition, methods: tuple[Method, ...]) -> Cell:
     believed = condition.answer_error if condition.believed_error is None else condition.believed_error
     # The exact programme is defined for answers that the drone takes to be right.
-    fitting = tuple(m for m in methods if m.name != "optimal" or (believed == 0 and k <= MOST_OPTIMAL))
+    fitting = tuple(m for m in methods if m.name != "optimal" or believed == 0)
     ready = tuple(calibrated(m, k) for m in fitting)
     return Cell(name=name, scenario="fire-warehouse", parameters=gap_parameters(k), condition=condition, methods=ready)
 
