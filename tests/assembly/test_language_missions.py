@@ -125,7 +125,7 @@ def test_what_an_answer_says_beyond_the_question_saves_questions(tmp_path: Path)
     plain = run_mission(MEDICINE, vehicle="kinematic")
     said = "no, the small black cubic one"
     record = run_mission(
-        MEDICINE, vehicle="kinematic", operator=lambda understand: Talker(understand, said), out=tmp_path / "run"
+        MEDICINE, vehicle="kinematic", operator=lambda talk: Talker(talk.understand, said), out=tmp_path / "run"
     )
     assert record.outcome is Outcome.SUCCESS, record.reason
     assert len(record.questions) == 1 < len(plain.questions)

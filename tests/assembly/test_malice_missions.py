@@ -261,10 +261,7 @@ def test_orders_in_labels_and_mission_files_are_data(tmp_path: Path, truth: str)
     report = (tmp_path / "run" / "report.html").read_text()
     assert "<script>yes" not in report
 
-    def silent(understand: Understand) -> Operator:
-        return _Odd(understand)
-
-    unsure = run(llm=FunctionModel(obedient), operator=silent)
+    unsure = run(llm=FunctionModel(obedient), operator=lambda talk: _Odd(talk.understand))
     assert unsure.questions[0].reply is Reply.UNSURE
     assert unsure.outcome is Outcome.SUCCESS
     assert unsure.flight.flown_m is not None

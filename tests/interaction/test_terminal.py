@@ -20,8 +20,9 @@ from rich.console import Console
 from tests.language.questions import BOX
 
 from mintpilot.assembly.talk import Talk
-from mintpilot.core.errors import DeviceError
+from mintpilot.core.errors import DeviceError, InputError
 from mintpilot.core.query import Command, Question, Reply
+from mintpilot.interaction.screen_words import screen_words
 from mintpilot.interaction.terminal import TerminalOperator
 
 from .test_scripted import question
@@ -153,6 +154,25 @@ def test_who_answers_before_the_better_words_come_is_heard_at_once(pipe):
     answer = asked.ask(ASKED, 20.0, Later())
     assert (answer.reply, answer.better_s) == (Reply.NO, None)
     assert "other words" not in shown.getvalue()
+
+
+@pytest.mark.parametrize(("lang", "yes"), [("de", "ja"), ("fr", "oui"), ("es", "sí"), ("en", "y")])
+def test_the_screen_speaks_the_operators_language_and_hears_what_it_offers(pipe, lang, yes):
+    shown, words = io.StringIO(), screen_words(lang)
+    asked = TerminalOperator(Console(file=shown, width=200), pipe, understand=Talk(lang=lang).understand, lang=lang)
+    for key, reply in ((yes, Reply.YES), (words.no.split()[0], Reply.NO), ("?", Reply.UNSURE)):
+        pipe.say(f"xyzzy\n{key}\n".encode())
+        assert asked.ask(ASKED, 5.0).reply is reply
+    for offered in words.orders.partition(":")[2].partition(".")[0].split(","):
+        pipe.say(f"{offered.strip()}\n".encode())
+        assert asked.ask(ASKED, 5.0).command is not None
+    for fixed in (words.asks, words.repeat, words.unsure_means, words.prompt):
+        assert fixed in shown.getvalue()
+
+
+def test_a_language_that_nobody_speaks_is_refused(pipe):
+    with pytest.raises(InputError, match="unknown language 'dee'"):
+        TerminalOperator(Console(file=io.StringIO()), pipe, understand=Talk().understand, lang="dee")
 
 
 def test_no_better_words_are_not_shown(pipe):

@@ -14,7 +14,7 @@ from mintpilot.assembly.talk import Talk, talk_for
 from mintpilot.assembly.worlds import World, build_world
 from mintpilot.core.errors import UnknownNameError
 from mintpilot.core.events import Event
-from mintpilot.core.ports import Ask, LanguageModel, Operator, Recorder, Understand
+from mintpilot.core.ports import Ask, LanguageModel, Operator, Recorder
 from mintpilot.interaction.scripted import ScriptedOperator
 from mintpilot.mission.account import first_accounts
 from mintpilot.mission.loop import fly_mission
@@ -30,8 +30,8 @@ from mintpilot.recording.run_folder import RunFolder
 
 Progress: TypeAlias = Callable[[Event], object]
 """Called with every event of a mission, as it happens."""
-MakeOperator: TypeAlias = Callable[[Understand], Operator]
-"""Makes an operator that hears free words, given what understands them."""
+MakeOperator: TypeAlias = Callable[[Talk], Operator]
+"""Makes an operator that hears free words, given the mission's language: what understands them, and which it is."""
 
 
 def check_mission(path: str | Path) -> list[Problem]:
@@ -116,8 +116,8 @@ def run_mission(
 
     Args:
         mission: a mission file's path, or its contents.
-        operator: who answers, or what makes such a one, given what understands free words; ``"scripted"``: one that
-            knows the truth, with the errors that the file states.
+        operator: who answers, or what makes such a one of the mission's language; ``"scripted"``: one that knows the
+            truth, with the errors that the file states.
         vehicle: ``"mujoco"`` or ``"kinematic"``; a mission on a given map is always flown by the latter.
         strategy: name of the method of asking.
         seed: overrides the seed in the file.
@@ -187,7 +187,7 @@ def _vehicle(name: str) -> VehicleChoice:
 
 def _operator(operator: Operator | MakeOperator | str, world: World, file: MissionFile, talk: Talk) -> Operator:
     if not isinstance(operator, str):
-        return cast(Operator, operator) if hasattr(operator, "ask") else operator(talk.understand)
+        return cast(Operator, operator) if hasattr(operator, "ask") else operator(talk)
     if operator != "scripted":
         raise UnknownNameError("operator", operator, ["scripted"])
     scripted: ScriptedOperator = scripted_operator(world, file.operator)

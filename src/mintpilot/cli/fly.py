@@ -16,9 +16,10 @@ from mintpilot.core.errors import InputError
 if TYPE_CHECKING:
     from rich.console import Console
 
+    from mintpilot.assembly.talk import Talk
     from mintpilot.cli.progress import Narrator
     from mintpilot.core.events import Event
-    from mintpilot.core.ports import Operator, Understand
+    from mintpilot.core.ports import Operator
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -84,7 +85,7 @@ def fly(path: Path, options: FlightOptions) -> ExitCode:
     return ExitCode.SUCCESS if record.outcome.value == "success" else ExitCode.NOT_A_SUCCESS
 
 
-def _operator(choice: str | None, console: Console, narrator: Narrator) -> Callable[[Understand], Operator] | str:
+def _operator(choice: str | None, console: Console, narrator: Narrator) -> Callable[[Talk], Operator] | str:
     """What makes the person at the terminal an operator, or the name of the scripted one."""
     somebody = sys.stdin is not None and sys.stdin.isatty() and console.is_terminal
     if choice == "scripted" or (choice is None and not somebody):
@@ -94,4 +95,8 @@ def _operator(choice: str | None, console: Console, narrator: Narrator) -> Calla
     from mintpilot.cli.progress import Attended
     from mintpilot.interaction.terminal import TerminalOperator
 
-    return lambda understand: Attended(TerminalOperator(console, sys.stdin, understand=understand), narrator)
+    def made(talk: Talk) -> Operator:
+        person = TerminalOperator(console, sys.stdin, understand=talk.understand, lang=talk.lang)
+        return Attended(person, narrator)
+
+    return made

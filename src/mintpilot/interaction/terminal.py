@@ -16,12 +16,12 @@ from rich.text import Text
 from mintpilot.core.errors import DeviceError
 from mintpilot.core.ports import BetterWords, Operator, Understand
 from mintpilot.core.query import Answer, Question, Reply
-
-ACCEPTED = "yes, no or don't know (y, n, ?), what is the case, or an order: hold, return, abort"
-"""What may be said, for somebody who said something else."""
+from mintpilot.interaction.screen_words import screen_words
 
 _LONGEST_LINE = 4096
 """Bytes; what is typed beyond them without a line's end is thrown away."""
+_KEYS = 18
+"""Columns for what may be typed."""
 _GLANCE_S = 0.05
 """While better words may come, it is looked for them so often."""
 
@@ -58,10 +58,12 @@ class TerminalOperator(Operator):
         console: where the question is shown; without a terminal plain text is written, no control codes.
         stdin: where the reply is read from, by its file descriptor (nothing else may read from it meanwhile).
         understand: what typed words mean.
+        lang: of what stands around the questions.
         clock: seconds, never going back.
 
     Raises:
         DeviceError: ``stdin`` has no file descriptor to read from.
+        UnknownNameError: the language is not known.
     """
 
     def __init__(
@@ -70,6 +72,7 @@ class TerminalOperator(Operator):
         stdin: Readable,
         *,
         understand: Understand,
+        lang: str = "en",
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
         try:
@@ -81,6 +84,7 @@ class TerminalOperator(Operator):
             ) from error
         self._console = console
         self._understand = understand
+        self._words = screen_words(lang)
         self._clock = clock
         self._pending = b""
         self._ended = False
@@ -99,7 +103,7 @@ class TerminalOperator(Operator):
         while True:
             line = self._read_line(turn)
             if line is None:
-                self._console.print(Text("No answer: going on the careful way.", style="yellow"))
+                self._console.print(Text(self._words.silence, style="yellow"))
                 return self._answer(turn, Reply.TIMEOUT)
             if line:
                 meaning = self._understand(line, question, max(0.0, turn.deadline_s - self._clock()))
@@ -115,10 +119,10 @@ class TerminalOperator(Operator):
                 if meaning.reply is not None or meaning.command is not None:
                     return said
                 if asked_again:
-                    self._console.print(Text("I do not understand: I take it as 'don't know'.", style="yellow"))
+                    self._console.print(Text(self._words.given_up, style="yellow"))
                     return said
                 asked_again = True
-                self._console.print(Text(f"I do not understand. Please say {ACCEPTED}.", style="yellow"))
+                self._console.print(Text(self._words.repeat, style="yellow"))
             self._prompt()
 
     def tell(self, text: str) -> None:
@@ -129,14 +133,13 @@ class TerminalOperator(Operator):
         return Answer(reply=reply, latency_s=self._clock() - turn.started_s, better_s=turn.better_s)
 
     def _show(self, question: Question, patience_s: float) -> None:
-        again = " (asked again in other words)" if question.attempt > 1 else ""
+        words = self._words
+        again = f" ({words.again})" if question.attempt > 1 else ""
         lines = [
-            Text(f"The drone asks{again}:", style="bold cyan"),
-            *_question_lines(question),
-            Text.assemble(("  ?  don't know  ", "yellow"), "→ it asks something else, or takes the careful way"),
-            Text(
-                f"Orders: hold, return, abort. Without an answer in {patience_s:.0f} s it takes the careful way.", "dim"
-            ),
+            Text(f"{words.asks}{again}:", style="bold cyan"),
+            *self._question_lines(question),
+            Text.assemble((f"  {words.unsure:<{_KEYS}}", "yellow"), "→ ", words.unsure_means),
+            Text(words.orders.format(f"{patience_s:.0f}"), style="dim"),
         ]
         self._console.print(Group(Text(), *lines))
         self._prompt()
@@ -147,13 +150,22 @@ class TerminalOperator(Operator):
         turn.better = None
         if question is not None:
             turn.better_s = self._clock() - turn.started_s
-            said = Text("The same in other words:", style="bold cyan")
-            self._console.print(Group(Text(), said, *_question_lines(question)))
+            said = Text(self._words.better, style="bold cyan")
+            self._console.print(Group(Text(), said, *self._question_lines(question)))
             self._prompt()
 
     def _prompt(self) -> None:
-        self._console.print(Text("Your answer: ", style="bold"), end="")
+        self._console.print(Text(self._words.prompt, style="bold"), end="")
         self._console.file.flush()
+
+    def _question_lines(self, question: Question) -> tuple[Text, ...]:
+        """The words with what Yes and what No do to the flight."""
+        words = self._words
+        return (
+            Text(_printable(question.text), style="bold"),
+            Text.assemble((f"  {words.yes:<{_KEYS}}", "green"), "→ ", _printable(question.yes_means)),
+            Text.assemble((f"  {words.no:<{_KEYS}}", "red"), "→ ", _printable(question.no_means)),
+        )
 
     def _drop_typed_ahead(self) -> None:
         if os.isatty(self._fd):
@@ -189,15 +201,6 @@ class TerminalOperator(Operator):
             if turn.better is not None and turn.better.done:
                 self._show_better(turn)
         return False
-
-
-def _question_lines(question: Question) -> tuple[Text, ...]:
-    """The words with what Yes and what No do to the flight."""
-    return (
-        Text(_printable(question.text), style="bold"),
-        Text.assemble(("  y  yes         ", "green"), "→ ", _printable(question.yes_means)),
-        Text.assemble(("  n  no          ", "red"), "→ ", _printable(question.no_means)),
-    )
 
 
 def _printable(text: str) -> str:

@@ -1,0 +1,105 @@
+"""What a screen says around a question, in the operator's language."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+
+from mintpilot.core.errors import UnknownNameError
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ScreenWords:
+    """Fixed words; ``{}`` in some of them is filled in."""
+
+    asks: str
+    again: str
+    """Follows ``asks`` where the same thing is asked once more."""
+    yes: str
+    no: str
+    unsure: str
+    """What to type, one word or two each."""
+    unsure_means: str
+    """What happens then."""
+    orders: str
+    """What may be ordered; ``{}``: seconds of patience."""
+    prompt: str
+    better: str
+    """Stands above better words that came later."""
+    repeat: str
+    """Answers words that were not understood; says what may be said."""
+    given_up: str
+    """The same the second time."""
+    silence: str
+
+
+WORDS: Mapping[str, ScreenWords] = MappingProxyType(
+    {
+        "en": ScreenWords(
+            asks="The drone asks",
+            again="asked again in other words",
+            yes="y  yes",
+            no="n  no",
+            unsure="?  don't know",
+            unsure_means="it asks something else, or takes the careful way",
+            orders="Orders: hold, return, abort. Without an answer in {} s it takes the careful way.",
+            prompt="Your answer: ",
+            better="The same in other words:",
+            repeat="I do not understand. Please say yes, no or don't know (y, n, ?), what is the case, or an order: "
+            "hold, return, abort.",
+            given_up="I do not understand: I take it as 'don't know'.",
+            silence="No answer: going on the careful way.",
+        ),
+        "de": ScreenWords(
+            asks="Die Drohne fragt",
+            again="noch einmal, mit anderen Worten",
+            yes="ja",
+            no="nein",
+            unsure="?  weiß nicht",
+            unsure_means="sie fragt etwas anderes oder nimmt den vorsichtigen Weg",
+            orders="Befehle: halt, zurück, abbrechen. Ohne Antwort in {} s nimmt sie den vorsichtigen Weg.",
+            prompt="Ihre Antwort: ",
+            better="Dasselbe in anderen Worten:",
+            repeat="Das habe ich nicht verstanden. Bitte: ja, nein, weiß nicht (?), oder ein Befehl: halt, zurück, "
+            "abbrechen.",
+            given_up="Das habe ich nicht verstanden: es gilt als „weiß nicht“.",
+            silence="Keine Antwort: es geht den vorsichtigen Weg weiter.",
+        ),
+        "fr": ScreenWords(
+            asks="Le drone demande",
+            again="encore une fois, en d'autres mots",
+            yes="oui",
+            no="non",
+            unsure="?  je ne sais pas",
+            unsure_means="il demande autre chose ou prend le chemin prudent",
+            orders="Ordres : stop, reviens, annule. Sans réponse en {} s, il prend le chemin prudent.",
+            prompt="Votre réponse : ",
+            better="La même chose en d'autres mots :",
+            repeat="Je n'ai pas compris. Dites : oui, non, je ne sais pas (?), ou un ordre : stop, reviens, annule.",
+            given_up="Je n'ai pas compris : cela compte comme « je ne sais pas ».",
+            silence="Pas de réponse : le chemin prudent est pris.",
+        ),
+        "es": ScreenWords(
+            asks="El dron pregunta",
+            again="otra vez, con otras palabras",
+            yes="sí",
+            no="no",
+            unsure="?  no sé",
+            unsure_means="pregunta otra cosa o toma el camino prudente",
+            orders="Órdenes: alto, vuelve, cancela. Sin respuesta en {} s toma el camino prudente.",
+            prompt="Su respuesta: ",
+            better="Lo mismo con otras palabras:",
+            repeat="No he entendido. Diga: sí, no, no sé (?), o una orden: alto, vuelve, cancela.",
+            given_up="No he entendido: cuenta como «no sé».",
+            silence="Sin respuesta: sigue por el camino prudente.",
+        ),
+    }
+)
+
+
+def screen_words(lang: str) -> ScreenWords:
+    """The words of that language. Raises `UnknownNameError` for one that is not known."""
+    if lang not in WORDS:
+        raise UnknownNameError("language", lang, WORDS)
+    return WORDS[lang]
