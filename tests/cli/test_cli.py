@@ -80,15 +80,28 @@ def test_exit_code_of_each_error(error, code):
         (["run", "m.yaml", "--seed", "x"], "--seed"),
         (["demo", "medicin"], "medicin"),
         (["check"], "--schema"),
+        (["demo", "--headless", "--llm", "endpiont"], "Did you mean 'endpoint'"),
+        (["plan", str(BUILDING), "--lang", "deutsch"], "unknown language 'deutsch'"),
+        (["run", str(BUILDING), "--llm", "endpoint"], "MINTPILOT_LLM_URL"),
     ],
 )
-def test_wrong_words_end_with_2_and_say_which(capsys, words, said):
+def test_wrong_words_end_with_2_and_say_which(capsys, monkeypatch, words, said):
+    monkeypatch.delenv("MINTPILOT_LLM_URL", raising=False)
     assert main(words) == ExitCode.WRONG_INPUT
     shown = capsys.readouterr()
     assert shown.out == ""
     assert said in shown.err
     assert main([*words, "--json"]) == ExitCode.WRONG_INPUT
     assert said in json.loads(capsys.readouterr().out)["error"]["message"]
+
+
+def test_the_command_line_goes_before_the_mission_file(capsys, tmp_path):
+    file = json.loads(demo_mission("fire-warehouse").model_dump_json(exclude_unset=True))
+    path = tmp_path / "mission.json"
+    for lang, options, words in (("de", [], "Ist "), ("de", ["--lang", "fr"], "Y a"), ("fr", ["--lang", "en"], "Is ")):
+        path.write_text(json.dumps({**file, "language": {"lang": lang}}))
+        assert main(["plan", str(path), "--json", *options]) == 0
+        assert json.loads(capsys.readouterr().out)["query"]["text"].startswith(words)
 
 
 def test_check_lists_every_mistake(capsys, bad_mission):

@@ -9,6 +9,7 @@ import pytest
 
 from mintpilot.assembly.registry import load
 from mintpilot.conformance import (
+    check_language_model,
     check_metric,
     check_objective,
     check_operator,
@@ -22,7 +23,7 @@ from mintpilot.conformance.sample import sample_world
 from mintpilot.core.errors import ConformanceError
 from mintpilot.core.geometry import Box
 from mintpilot.core.observation import Detection
-from mintpilot.core.ports import Ask, Fly
+from mintpilot.core.ports import Ask, Completion, Fly
 from mintpilot.core.query import Answer, Reply
 from mintpilot.elicitation.objectives import InformationGain
 from mintpilot.planning.task_planner import GridPlanner
@@ -117,6 +118,43 @@ class Rude:
 def test_an_operator():
     with pytest.raises(ConformanceError, match="latency_s"):
         check_operator(Rude)
+
+
+class OldFashioned:
+    def tell(self, text):
+        pass
+
+    def ask(self, question, patience_s):
+        return Answer(reply=Reply.YES, latency_s=0.0)
+
+
+def test_an_operator_who_is_never_told_better_words():
+    with pytest.raises(ConformanceError, match="optionally, `better`"):
+        check_operator(OldFashioned)
+
+
+class Stubborn:
+    def complete(self, prompt, *, schema, timeout_s):
+        raise KeyError(prompt)
+
+
+class Mumbling:
+    def complete(self, prompt, *, schema, timeout_s):
+        return "yes"
+
+
+class Timeless:
+    def complete(self, prompt, *, schema, timeout_s):
+        return Completion(text="yes", model="timeless", seconds=float("inf"))
+
+
+@pytest.mark.parametrize(
+    ("model", "said"),
+    [(Stubborn, "must be a DeviceError"), (Mumbling, "returned a str"), (Timeless, "seconds = inf")],
+)
+def test_a_language_model(model, said):
+    with pytest.raises(ConformanceError, match=said):
+        check_language_model(model)
 
 
 class Dreamer:

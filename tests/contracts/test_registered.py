@@ -8,10 +8,12 @@ from functools import partial
 import numpy as np
 import pytest
 from rich.console import Console
+from tests.assembly.llm_server import LlmServer
 
 from mintpilot.assembly.registry import load, names
 from mintpilot.assembly.talk import Talk
 from mintpilot.conformance import (
+    check_language_model,
     check_metric,
     check_objective,
     check_operator,
@@ -22,8 +24,11 @@ from mintpilot.conformance import (
     check_vehicle,
 )
 from mintpilot.conformance.sample import sample_world
+from mintpilot.core.errors import MissingPartError
+from mintpilot.core.ports import Completion
 from mintpilot.interaction.scripted import ScriptedOperator
 from mintpilot.interaction.terminal import TerminalOperator
+from mintpilot.language.doubles import FunctionModel, ReplayModel
 from mintpilot.recording.in_memory import HistoryRecorder
 from mintpilot.recording.recorders import MemoryRecorder, NullRecorder, TeeRecorder
 from mintpilot.recording.run_folder import RunFolder
@@ -90,3 +95,30 @@ def test_the_drone_of_four_rotors_is_a_vehicle():
     pytest.importorskip("mujoco")
     world = sample_world()
     check_vehicle(lambda: MujocoSimulator(world.scene, world.rules, seed=0))
+
+
+def test_no_language_model_keeps_the_contract_of_one():
+    check_language_model(load("language", "template"))
+
+
+def test_a_function_and_a_recording_are_language_models():
+    check_language_model(lambda: FunctionModel(lambda prompt: "yes"))
+    check_language_model(lambda: ReplayModel([Completion(text="yes", model="replay", seconds=0.0)] * 3))
+
+
+def test_a_server_is_a_language_model(monkeypatch):
+    server = LlmServer(lambda prompt: "yes")
+    monkeypatch.setenv("MINTPILOT_LLM_URL", server.url)
+    monkeypatch.setenv("MINTPILOT_LLM_MODEL", "tiny")
+    check_language_model(load("language", "endpoint"))
+    server.shut_down()
+    check_language_model(load("language", "endpoint"))
+
+
+@pytest.mark.slow
+def test_the_embedded_model_is_one():
+    try:
+        made = load("language", "embedded")()
+    except MissingPartError as error:
+        pytest.skip(str(error))
+    check_language_model(lambda: made)

@@ -11,6 +11,7 @@ nothing, or raises `mintpilot.core.errors.ConformanceError`, which says what was
 
 from __future__ import annotations
 
+from mintpilot.conformance.completing import check_language_model
 from mintpilot.conformance.flying import check_vehicle
 from mintpilot.conformance.keeping import check_recorder
 from mintpilot.conformance.operators import check_operator
@@ -19,6 +20,7 @@ from mintpilot.conformance.seeing import check_perception
 from mintpilot.conformance.strategies import check_objective, check_strategy
 
 __all__ = [
+    "check_language_model",
     "check_metric",
     "check_objective",
     "check_operator",

@@ -6,10 +6,11 @@ import math
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from concurrent.futures import TimeoutError as Late
+from dataclasses import replace
 
 from mintpilot.conformance.sample import require, sample_problem
 from mintpilot.core.errors import ConformanceError
-from mintpilot.core.ports import Operator
+from mintpilot.core.ports import BetterWords, Operator
 from mintpilot.core.query import Answer, Literal, Query, Question, Reply, Saying, SayingKind
 
 HANGS_S = 20.0
@@ -18,7 +19,7 @@ _HOSTILE = "Is it <b>the box</b>?\n\x1b[31m" + "very " * 200 + "red \N{BLACK STA
 
 
 def check_operator(make: Callable[[], Operator], *, patience_s: float = 1.0) -> None:
-    """Puts a question about each gap of a small mission, one of them in hostile words, and tells something.
+    """Puts questions about each gap of a small mission, in hostile words and with better ones too; tells something.
 
     Args:
         make: makes a fresh operator; called more than once. Nobody needs to be there: silence is a valid reply.
@@ -37,14 +38,35 @@ def check_operator(make: Callable[[], Operator], *, patience_s: float = 1.0) -> 
                 query=Query(literals=(literal,)), text=text, yes_means="I fly on", no_means="I fly round", gaps=(gap,)
             )
             _check_answer(_asked(operator, question, patience_s), operator, patience_s)
+    later = _asked(operator, question, patience_s, _Better(question))
+    _check_answer(later, operator, patience_s)
     impatient = _asked(make(), question, 0.0)
     _check_answer(impatient, operator, math.inf)
 
 
-def _asked(operator: Operator, question: Question, patience_s: float) -> Answer:
+class _Better(BetterWords):
+    """Better words that are ready at once."""
+
+    done = True
+
+    def __init__(self, question: Question) -> None:
+        self._question = replace(question, text="Is it so?")
+
+    def wait(self, timeout_s: float) -> Question | None:  # noqa: ARG002
+        """The question."""
+        return self._question
+
+
+def _asked(operator: Operator, question: Question, patience_s: float, better: BetterWords | None = None) -> Answer:
     pool = ThreadPoolExecutor(1)
+    given = () if better is None else (better,)
     try:
-        return pool.submit(operator.ask, question, patience_s).result(patience_s + HANGS_S)
+        return pool.submit(operator.ask, question, patience_s, *given).result(patience_s + HANGS_S)
+    except TypeError as error:
+        raise ConformanceError(
+            f"{type(operator).__name__}: `ask` cannot be called with better words ({error}); it takes the question, "
+            "the patience and, optionally, `better`"
+        ) from error
     except Late:
         raise ConformanceError(
             f"{type(operator).__name__}: `ask` has not returned {HANGS_S:g} s after its patience of {patience_s:g} s "
