@@ -2,34 +2,98 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from mintpilot.benchmark.language_cases import QUESTIONS, AnswerCase, answer_cases
 from mintpilot.core.gap import ABSENT, BLOCKED, PASSABLE
 from mintpilot.core.query import Command, Literal, Query, Question, Reply, Saying, SayingKind
 from mintpilot.language import Reading, understand_answer
 
-from . import answers, questions
+from . import questions
 
-CASES = [
-    *((text, questions.SMOKE, reading) for text, reading in answers.SMOKE.items()),
-    *((text, questions.ROOM, reading) for text, reading in answers.ROOM.items()),
-    *((text, questions.BOX, reading) for text, reading in answers.BOX.items()),
-]
+CASES = list(answer_cases())
+AGAIN = {"unsure", "other"}
+"""Either way it is asked again."""
+ALSO: dict[str, set[str]] = {
+    "not the small red one": {"box-2", "box-3"},
+    "not the red one, the blue one": {"box-2", "box-3"},
+    "no, I mean the big blue box": {"box-2"},
+    "no the blue one": {"box-2", "box-3"},
+    "the blue one": {"box-2", "box-3"},
+    "yes, the red one": {"box-1"},
+    "not the red one": {"box-2", "box-3"},
+    "the large one": {"box-2"},
+}
+"""What is said beyond the question: the boxes that are left."""
 
 
-@pytest.mark.parametrize(("text", "question", "reading"), CASES)
-def test_answers_are_understood(text: str, question: Question, reading: str) -> None:
-    assert understand_answer(text, question).reading == reading
+@pytest.mark.parametrize("question", QUESTIONS)
+@pytest.mark.parametrize("reading", list(Reading))
+def test_answers_are_understood_and_no_yes_is_made_up(question: str, reading: str) -> None:
+    cases = [c for c in CASES if c.question is QUESTIONS[question] and c.reading == reading]
+    got = {c.text: understand_answer(c.text, c.question).reading for c in cases}
+    right = [text for text, read in got.items() if read == reading or {read, reading} <= AGAIN]
+    assert cases
+    assert len(right) >= 0.95 * len(cases)
+    assert reading == Reading.YES or [text for text, read in got.items() if read == Reading.YES] == []
+
+
+@settings(deadline=None, max_examples=300)
+@given(st.sampled_from([c for c in CASES if c.reading != "yes"]), st.sampled_from(["'", ",", ".", "?"]))
+def test_missing_punctuation_makes_no_yes(case: AnswerCase, mark: str) -> None:
+    if mark == "?" and case.text.strip("?") in {c.text for c in CASES if c.reading == "yes"} | {"safe", "okay", "red"}:
+        return
+    assert understand_answer(case.text.replace(mark, ""), case.question).reading is not Reading.YES
+
+
+@pytest.mark.parametrize(
+    ("text", "reading"),
+    [
+        ("I don't think it's safe", "no"),
+        ("I think it's safe", "unsure"),
+        ("it's not unsafe", "yes"),
+        ("it isn't not safe", "other"),
+        ("not very dangerous", "unsure"),
+        ("we are safe", "other"),
+        ("it was safe an hour ago", "unsure"),
+        ("no it is not it is toxic", "no"),
+        ("yes, no wait, no", "no"),
+        ("no sorry I meant yes", "yes"),
+        ("yes nto safe", "other"),
+        ("yes I thikn", "other"),
+        ("it's on safe", "no"),
+        ("no toxic fumes", "other"),
+        ("I'll come back to you on that", "unsure"),
+    ],
+)
+def test_negation_doubt_and_correction_reach_as_far_as_they_should(text: str, reading: str) -> None:
+    assert understand_answer(text, questions.SMOKE).reading == reading
 
 
 def test_there_are_a_hundred_of_them_of_every_reading() -> None:
     assert len(CASES) >= 100
-    assert {reading for _, _, reading in CASES} == set(Reading)
+    assert {case.reading for case in CASES} == set(Reading)
 
 
-@pytest.mark.parametrize(("text", "left"), answers.ALSO.items())
+@pytest.mark.parametrize(
+    ("name", "text", "reading"),
+    [
+        ("left", "the left one", "yes"), ("left", "the one on the right", "no"), ("left", "not the left one", "no"),
+        ("larger", "the bigger one", "yes"), ("nearest", "the far one", "no"), ("nearest", "the closest", "yes"),
+    ],
+)  # fmt: skip
+def test_relations_are_echoed_or_turned(name: str, text: str, reading: str) -> None:
+    saying = Saying(kind=SayingKind.RELATION, name=name, value="box-3")
+    literal = Literal(gap=questions.BOX_GAP.id, values=frozenset({"box-1"}), saying=saying)
+    related = replace(questions.BOX, query=Query(literals=(literal,)), text="Is it the one that I mean?")
+    assert understand_answer(text, related).reading == reading
+
+
+@pytest.mark.parametrize(("text", "left"), ALSO.items())
 def test_what_is_said_beyond_the_question_is_kept(text: str, left: set[str]) -> None:
     also = understand_answer(text, questions.BOX).also
     assert also is not None

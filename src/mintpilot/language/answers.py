@@ -1,8 +1,10 @@
 """What a free answer means (method, section 5), by rules alone.
 
-Meaning is sought in the question's own cut: words about the world (``it is toxic``, ``the blue one``) are turned into
-values of its gap, and the cut says whether that is a Yes or a No. In doubt the reading is OTHER: ask again. Nothing
-that an answer says can do more than answer: it is data.
+The words are taken as classes (`answer_lexing`), read with their negations and doubts (`answer_claims`), and held
+against the question's own cut: words about the world (``it is toxic``, ``the blue one``) are turned into values of
+its gap, and the cut says whether that is a Yes or a No. In doubt the reading is OTHER or UNSURE: ask again. A Yes
+that opens a region must be said without any doubt, condition, question or unknown thing beside it. Nothing that an
+answer says can do more than answer: it is data.
 """
 
 from __future__ import annotations
@@ -12,33 +14,34 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from mintpilot.core.gap import ABSENT, BLOCKED, PASSABLE, PRESENT, GapKind
-from mintpilot.core.query import Command, Literal, Question, Reply
-from mintpilot.language.answer_words import COMMANDS, CONDITION, CORRECTION, GENTLE, SIGNS, Sign
-from mintpilot.language.referring import Mention, mention
+from mintpilot.core.query import Combine, Command, Literal, Question, Reply
+from mintpilot.language.answer_claims import read_claims
+from mintpilot.language.answer_lexing import atoms, plain
+from mintpilot.language.answer_scope import Claim, Said
+from mintpilot.language.answer_turns import GENTLE, NO_SPEECH, PLAIN_NO, asks_back, corrected
+from mintpilot.language.orders import order_in
+from mintpilot.language.referring import Mention, mention, said_relation
+from mintpilot.language.slips import may_hide_caution
 
 _LONGEST = 300
-_STRANGE_WORDS = 6
-_STRANGE_WORDS_DERIVED = 2
-_PLAIN_NO = re.compile(r"(?:no|nope|nah|not|never|do not|negative)\b")
-_TAKEN_BACK = re.compile(r"\b(?:(?:do )?not|never|no need to|without)(?: \w+)?\s*$")
-_STATED = (
-    (Sign.PASSABLE, GapKind.OBSTACLE, PASSABLE),
-    (Sign.BLOCKED, GapKind.OBSTACLE, BLOCKED),
-    (Sign.CLEAR, GapKind.OBSTACLE, PASSABLE),
-    (Sign.PRESENT, GapKind.PRESENCE, PRESENT),
-    (Sign.ABSENT, GapKind.PRESENCE, ABSENT),
-    (Sign.CLEAR, GapKind.PRESENCE, ABSENT),
-)
-_SHORT = {
-    "can't": "cannot", "cant": "cannot", "can not": "cannot", "won't": "will not", "isn't": "is not",
-    "aren't": "are not",
-    "don't": "do not", "dont": "do not", "doesn't": "does not", "didn't": "did not", "shouldn't": "should not",
-    "wouldn't": "would not", "couldn't": "could not", "wasn't": "was not", "it's": "it is", "that's": "that is",
-    "there's": "there is", "i'm": "i am", "i'd": "i would", "you're": "you are", "they're": "they are",
-    "let's": "let us",
-    "mustn't": "must not", "gonna": "going to", "idk": "i do not know", "y'all": "you", "what's": "what is",
-    "nobody's": "nobody is", "haven't": "have not", "hasn't": "has not", "who's": "who is",
-}  # fmt: skip
+_STATED = {
+    Claim.PASSABLE: (GapKind.OBSTACLE, PASSABLE),
+    Claim.BLOCKED: (GapKind.OBSTACLE, BLOCKED),
+    Claim.AWAY: (GapKind.OBSTACLE, BLOCKED),
+    Claim.PRESENT: (GapKind.PRESENCE, PRESENT),
+    Claim.ABSENT: (GapKind.PRESENCE, ABSENT),
+}
+_MOST_STRANGE = {
+    "yes, explained": 4,
+    "yes": 1,
+    "no": 9,
+    "derived yes": 0,
+    "benign": 2,
+    "derived no": 3,
+    "derived": 2,
+    "absent": 1,
+}
+"""How many unknown words an answer may have. None where a way is called free: it may be about something else."""
 
 
 class Reading(StrEnum):
@@ -71,7 +74,7 @@ class Understood:
 
 
 def understand_answer(text: str, question: Question) -> Understood:
-    """Reads a free answer to a yes/no question.
+    """Reads a free answer.
 
     ``not the red one, the blue one`` answers more than was asked: `Understood.also` carries it where it maps to known
     attributes. An order (``stop``, ``abort``, ``come back``) comes before everything else.
@@ -80,114 +83,133 @@ def understand_answer(text: str, question: Question) -> Understood:
         text: the words, typed or heard. Never an instruction to this program.
         question: what was asked, with the gaps that it speaks of.
     """
-    order, words = _order(_plain(text))
+    order, words = order_in(plain(text))
     if order is not None:
         return Understood(reading=Reading.COMMAND, command=order)
-    if not words or len(words) > _LONGEST:
+    if not words or len(words) > _LONGEST or NO_SPEECH.search(text):
         return Understood(reading=Reading.OTHER)
-    parts = CORRECTION.split(words)
-    if len(parts) > 1 and parts[-1].strip(" ,.;"):
-        words = parts[-1]
-    return _read(words, text, question)
+    return _read(corrected(words), question)
 
 
-def _read(words: str, text: str, question: Question) -> Understood:
-    said = mention(words, question.gaps)
-    signs, strange = _signs(said.rest)
-    strange = strange - set(re.findall(r"\w+", question.text.lower()))
-    stated = _stated(signs, question)
-    if Sign.UNSURE in signs:
-        return Understood(reading=Reading.UNSURE)
-    asks_back = text.strip().endswith("?") and Sign.YES not in signs
-    if said.confused or asks_back or CONDITION.search(GENTLE.sub("", words)):
-        return Understood(reading=Reading.OTHER)
-    readings = _claims(signs, question) | _by_values(stated, question) | _by_mention(said, signs, question)
-    if len(readings) != 1:
-        return Understood(reading=Reading.OTHER)
-    (reading,) = readings
-    if len(strange) > _most_strange(reading, signs, words):
-        return Understood(reading=Reading.OTHER)
-    also = said.literal() if said.values and reading in (Reading.YES, Reading.NO) else None
+def _read(words: str, question: Question) -> Understood:
+    said_of = mention(words, question.gaps)
+    about = _topic(question)
+    words_left = GENTLE.sub("", said_of.rest)
+    known = frozenset(re.findall(r"\w+", question.text.lower()))
+    said = read_claims(atoms(words_left, about, known), about)
+    readings = _readings(said, said_of, words, question)
+    reading = _weighed(readings, said, said_of, words, question)
+    also = said_of.literal() if said_of.values and reading in (Reading.YES, Reading.NO) else None
     return Understood(reading=reading, also=also)
 
 
-def _plain(text: str) -> str:
-    words = text.lower().replace("\N{RIGHT SINGLE QUOTATION MARK}", "'").replace("...", " , ").replace("-", " ")
-    words = re.sub(r"[^\w\s',.;!?]", " ", words)
-    for short, long in _SHORT.items():
-        words = re.sub(rf"(?<!\w){re.escape(short)}(?!\w)", long, words)
-    return " ".join(re.sub(r"\s*([,.;!?])\s*", r" \1 ", words).split()).strip(" ,.;!?")
+def _topic(question: Question) -> GapKind:
+    """The kind of thing asked about; where there are several, the one where most care is needed."""
+    kinds = {gap.kind for gap in question.gaps}
+    order = (GapKind.OBSTACLE, GapKind.PRESENCE, GapKind.TARGET, GapKind.VALUE)
+    return next((kind for kind in order if kind in kinds), GapKind.OBSTACLE)
 
 
-def _order(words: str) -> tuple[Command | None, str]:
-    """The order in the words, if any; else the words without orders that are taken back (``do not stop``)."""
-    for pattern, command in COMMANDS:
-        for found in reversed(list(pattern.finditer(words))):
-            taken_back = _TAKEN_BACK.search(words[: found.start()])
-            if taken_back is None:
-                return command, words
-            words = f"{words[: taken_back.start()]} {words[found.end() :]}"
-    return None, words.strip(" ,.;!?")
+def _readings(said: Said, said_of: Mention, words: str, question: Question) -> set[Reading]:
+    """All that the claims would mean for the cut."""
+    claims = said.claims
+    relation = said_relation(words, question)
+    found = _by_values(claims, words, question)
+    if relation is None:
+        found |= _by_mention(said_of, claims, question)
+    else:
+        found.add(Reading.YES if relation else Reading.NO)
+    if claims & {Claim.YES, Claim.AGREE}:
+        found.add(Reading.YES)
+    if Claim.NO in claims:
+        found.add(Reading.NO)
+    if not found and Claim.BOOST in claims and Claim.EITHER not in claims:
+        found.add(Reading.YES)
+    return found
 
 
-def _signs(words: str) -> tuple[set[Sign], set[str]]:
-    """The signs in the words, and the words that say nothing known."""
-    signs: set[Sign] = set()
-    for pattern, sign in SIGNS:
-        words, found = pattern.subn(" ; ", words)
-        if found:
-            signs.add(sign)
-    return signs - {Sign.NOISE}, set(re.findall(r"\w+", words))
+def _weighed(readings: set[Reading], said: Said, said_of: Mention, words: str, question: Question) -> Reading:
+    """The one reading, if nothing speaks against it."""
+    careful = Reading.NO if _topic(question) is GapKind.OBSTACLE else None
+    if Claim.UNSURE in said.claims or (said.waits and (not readings or readings == {Reading.YES})):
+        return Reading.UNSURE
+    if not readings and said.is_hedged:
+        return Reading.UNSURE
+    if len(readings) != 1 or said_of.confused or Claim.UNCLEAR in said.claims:
+        return Reading.OTHER
+    (reading,) = readings
+    if (said.is_condition or said.is_mockery) and (reading is not careful or not _is_refusal(said)):
+        return Reading.OTHER
+    if asks_back(words) and (reading is not careful or not PLAIN_NO.search(words)):
+        return Reading.OTHER
+    if Claim.EITHER in said.claims and not said.plain:
+        return Reading.OTHER
+    if said.is_hedged and reading is not careful:
+        return Reading.UNSURE
+    if (
+        said.is_past
+        and not said.plain & {Claim.YES, Claim.NO}
+        and reading is not careful
+        and Claim.PRESENT not in said.claims
+    ):
+        return Reading.UNSURE
+    if said.was_then and Claim.YES not in said.plain and said.claims & {Claim.PASSABLE, Claim.AGREE}:
+        return Reading.UNSURE
+    if reading is Reading.YES and may_hide_caution(said.strange):
+        return Reading.OTHER
+    return reading if len(said.strange) <= _MOST_STRANGE[_basis(reading, said, question)] else Reading.OTHER
 
 
-def _most_strange(reading: Reading, signs: set[Sign], words: str) -> int:
-    """How many words that say nothing known an answer may have.
-
-    Few where a Yes is only derived from what is said of the world, or a No stands somewhere in a sentence.
-    """
-    if reading is Reading.YES and Sign.YES not in signs:
-        return _STRANGE_WORDS_DERIVED
-    if reading is Reading.NO and not _PLAIN_NO.match(words):
-        return _STRANGE_WORDS_DERIVED
-    return _STRANGE_WORDS
+def _is_of_the_past(said: Said) -> bool:
+    """Whether it only tells how it was, which may have changed; that somebody was there still counts."""
+    long_ago = said.is_past and not said.plain & {Claim.YES, Claim.NO} and Claim.PRESENT not in said.claims
+    was_free = said.was_then and Claim.YES not in said.plain and said.claims & {Claim.PASSABLE, Claim.AGREE}
+    return long_ago or bool(was_free)
 
 
-def _stated(signs: set[Sign], question: Question) -> dict[str, set[str]]:
-    """Values of the question's gaps that the answer states; only where one gap is of that kind."""
-    stated: dict[str, set[str]] = {}
-    for sign, kind, value in _STATED:
-        gaps = [g for g in question.gaps if g.kind is kind]
-        if sign in signs and len(gaps) == 1:
-            stated.setdefault(gaps[0].id, set()).add(value)
-    return stated
+def _is_refusal(said: Said) -> bool:
+    """Whether a No stands whatever else is said: an explicit one, or an order to keep out."""
+    return bool(said.claims & {Claim.NO, Claim.AWAY}) and not said.claims & {Claim.YES, Claim.AGREE, Claim.PASSABLE}
 
 
-def _claims(signs: set[Sign], question: Question) -> set[Reading]:
-    """Plain yes and no. What may open a region needs a yes without doubt."""
-    readings: set[Reading] = set()
-    if Sign.YES in signs:
-        readings.add(Reading.YES)
-    if Sign.NO in signs or Sign.UNLIKELY in signs:
-        readings.add(Reading.NO)
-    if Sign.LIKELY in signs:
-        opens = any(g.kind is GapKind.OBSTACLE for g in question.gaps)
-        readings = {Reading.UNSURE} if opens else readings or {Reading.YES}
-    return readings
+def _basis(reading: Reading, said: Said, question: Question) -> str:
+    """What the reading rests on."""
+    if _topic(question) is GapKind.OBSTACLE and Claim.PASSABLE in said.claims and not said.claims & {Claim.YES}:
+        return "benign" if said.is_benign else "derived yes"
+    if reading is Reading.YES:
+        explained = said.breaks_after_plain or _topic(question) is not GapKind.OBSTACLE
+        return "derived" if Claim.YES not in said.claims else "yes, explained" if explained else "yes"
+    return "no" if Claim.NO in said.claims else "absent" if Claim.ABSENT in said.claims else "derived no"
 
 
-def _by_values(stated: dict[str, set[str]], question: Question) -> set[Reading]:
+def _by_values(claims: set[Claim], words: str, question: Question) -> set[Reading]:
     """What the cut makes of stated values: its own answer, where they settle it."""
     readings: set[Reading] = set()
-    for gap_id, values in stated.items():
-        readings.add(_settled(gap_id, values, question))
+    for claim, (kind, value) in _STATED.items():
+        gaps = [g.id for g in question.gaps if g.kind is kind]
+        if claim not in claims or not gaps:
+            continue
+        if len(gaps) > 1 and not _is_of_all(words, question):
+            readings.add(Reading.OTHER)
+        elif len(gaps) > 1:
+            holds = question.query.holds(dict.fromkeys(gaps, value))
+            readings.add(Reading.YES if holds else Reading.NO)
+        else:
+            readings.add(_settled(gaps[0], {value}, question))
     return readings
 
 
-def _by_mention(said: Mention, signs: set[Sign], question: Question) -> set[Reading]:
+def _is_of_all(words: str, question: Question) -> bool:
+    """``they are both safe``: of all things that the question names."""
+    same_kind = len({g.kind for g in question.gaps}) == 1 and question.query.combine is Combine.ALL
+    return same_kind and re.search(r"\b(?:both|all|each|neither|none)\b", words) is not None
+
+
+def _by_mention(said: Mention, claims: set[Claim], question: Question) -> set[Reading]:
     if not said.values or said.gap is None:
         return set()
     reading = _settled(said.gap.id, set(said.values), question)
-    if reading is Reading.OTHER and (signs & {Sign.YES, Sign.NO}):
+    if reading is Reading.OTHER and (claims & {Claim.YES, Claim.NO}):
         return set()
     return {reading}
 

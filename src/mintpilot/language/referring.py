@@ -7,15 +7,27 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from mintpilot.core.gap import Candidate, GapKind, KnowledgeGap
-from mintpilot.core.query import Literal, Saying, SayingKind
+from mintpilot.core.query import Literal, Question, Saying, SayingKind
 
 _ALIKE = {
     **dict.fromkeys(("big", "bigger", "biggest", "larger", "largest", "huge"), "large"),
     **dict.fromkeys(("little", "smaller", "smallest", "tiny"), "small"),
     "gray": "grey",
 }
+_OPPOSITES = tuple(
+    (frozenset(a.split()), frozenset(b.split()))
+    for a, b in (
+        ("left", "right"),
+        ("larger bigger largest biggest large big taller", "smaller smallest small little tiny shorter"),
+        ("nearest closest nearer closer near close", "farthest furthest farther further far"),
+        ("higher above upper top", "lower below under bottom"),
+        ("front", "behind back rear"),
+    )
+)
 _STOP = frozenset(("the", "a", "an", "of", "with", "and", "to", "near", "one", "it", "is", "on", "in", "at", "by"))
-_NOT = re.compile(r"\b(?:not|never|no|nor|neither|except|without)\b(?: (?:the|a|an|that|this|any))*$")
+_SUCH = "such"
+"""Stands in the rest of an answer for the words that named candidates."""
+_NOT = re.compile(r"\b(?:not|never|nor|neither|except|without)\b(?: (?:the|a|an|that|this|any))*$")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -56,12 +68,39 @@ def mention(words: str, gaps: Sequence[KnowledgeGap]) -> Mention:
         elif _NOT.search(" ".join(rest[-4:])):
             ruled_out |= run
             _take_back(rest)
+            rest.append(_SUCH)
         else:
+            rest.append(_SUCH)
             named &= run
             any_named = True
     values = named - ruled_out if any_named or ruled_out else set()
     confused = not values and (any_named or bool(ruled_out))
     return Mention(gap=gap, values=frozenset(values), rest=" ".join(rest), confused=confused)
+
+
+def said_relation(words: str, question: Question) -> bool | None:
+    """Whether an answer says that the relation asked about holds (``the left one``).
+
+    None where it does not speak of that relation, or says both.
+    """
+    if len(question.query.literals) != 1:
+        return None
+    saying = question.query.literals[0].saying
+    if saying.kind is not SayingKind.RELATION:
+        return None
+    asked = set(re.findall(r"\w+", saying.name))
+    for same, opposite in (*_OPPOSITES, *((b, a) for a, b in _OPPOSITES)):
+        if asked & same:
+            said = {*_says(words, same), *(not truth for truth in _says(words, opposite))}
+            return said.pop() if len(said) == 1 else None
+    return None
+
+
+def _says(words: str, names: frozenset[str]) -> set[bool]:
+    """For each time that one of the names is said: whether it is not denied. ``right`` counts only as a side."""
+    others = names - {"right"}
+    pattern = rf"\b(?:{'|'.join(sorted(others))})\b" if others else r"\b(?:the|on|to|my|your) right\b"
+    return {_NOT.search(words[: found.start()].rstrip()) is None for found in re.finditer(pattern, words)}
 
 
 def _runs(words: str, gap: KnowledgeGap) -> Iterator[str | set[str]]:
@@ -81,8 +120,9 @@ def _runs(words: str, gap: KnowledgeGap) -> Iterator[str | set[str]]:
 
 
 def _words_of(candidate: Candidate) -> frozenset[str]:
-    """Words that single values of the candidate's attributes are made of."""
-    said = " ".join(a.value for a in candidate.attributes).lower().replace("_", " ")
+    """Words that the candidate's attributes and its description are made of."""
+    values = (*(a.value for a in candidate.attributes), candidate.description)
+    said = " ".join(values).lower().replace("_", " ")
     return frozenset(_ALIKE.get(w, w) for w in re.findall(r"\w+", said)) - _STOP
 
 

@@ -1,0 +1,85 @@
+"""The classes of words of which answers are made; what they do to each other is in `answer_scope`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+
+class Kind(StrEnum):
+    """What a few words of an answer do."""
+
+    YES = "yes"
+    NO = "no"
+    BOOST = "boost"
+    """A yes by itself, emphasis beside anything else: ``absolutely``."""
+    AGREE = "agree"
+    """Consent to what is proposed: ``go ahead``."""
+    THROUGH = "through"
+    AROUND = "around"
+    SAFE = "safe"
+    DANGER = "danger"
+    HAZARD = "hazard"
+    """A danger as a thing, so that ``no`` before it denies it: ``no risk``."""
+    BENIGN = "benign"
+    """What smoke may turn out to be: ``steam``."""
+    MINIMISE = "minimise"
+    CLEAR = "clear"
+    """Of smoke: passable. Of a room: empty."""
+    PERSON = "person"
+    ONE = "one"
+    """Somebody certain: ``he``, ``they``."""
+    EVERYBODY = "everybody"
+    NOBODY = "nobody"
+    SOME = "some"
+    """A part of all: ``most``, ``two of``."""
+    INSIDE = "inside"
+    OUT = "out"
+    LEFT = "left"
+    """``nobody left`` is said of empty rooms, and of rooms that nobody left."""
+    TRAPPED = "trapped"
+    EMPTY = "empty"
+    OCCUPIED = "occupied"
+    TRACE = "trace"
+    """What people in a room make: ``voices``, ``knocking``."""
+    PERCEIVE = "perceive"
+    EXIST = "exist"
+    """``there is``."""
+    NUMBER = "number"
+    NOT = "not"
+    KNOW = "know"
+    """What one cannot do who is unsure: ``tell``, ``see``, ``remember``."""
+    THINK = "think"
+    """A doubt that lets a negation before it pass: ``I do not think it is safe``."""
+    LIKELY = "likely"
+    UNLIKELY = "unlikely"
+    SOFT = "soft"
+    """Takes from an adjective: ``fairly safe``."""
+    VERY = "very"
+    UNSURE = "unsure"
+    RISK = "risk"
+    """Consent that knows of a danger: ``risk it``."""
+    ELSEWHERE = "elsewhere"
+    """Another place than the one asked about."""
+    STALL = "stall"
+    """``wait``: no answer, unless one follows."""
+    CONDITION = "condition"
+    PAST = "past"
+    MOCK = "mock"
+    """Words of mockery or play: no Yes beside them counts."""
+    SUBJECT = "subject"
+    PLACE = "place"
+    PRONOUN = "pronoun"
+    """People that a statement may be about instead of the thing asked about: ``we are safe``."""
+    VERB = "verb"
+    BREAK = "break"
+    NOISE = "noise"
+    STRANGE = "strange"
+
+
+@dataclass(frozen=True, slots=True)
+class Atom:
+    """A few words of an answer and their class."""
+
+    kind: Kind
+    text: str

@@ -1,0 +1,43 @@
+"""Turns of speech that change what an answer is worth: corrections, questions back, mild conditions."""
+
+from __future__ import annotations
+
+import re
+
+CORRECTION = re.compile(
+    r"\b(?:actually|no wait|wait no(?= \w)|(?<!what )i mean(?! it\b)|i meant|sorry|correction|scratch that|strike that"
+    r"|cancel that|belay that"
+    r"|disregard that|make that|on second thoughts?|changed my mind|wait(?= (?:no|yes)\b)|(?:hang|hold) on"
+    r"(?= (?:no|yes)\b)|no sorry|rather(?= the\b))\b"
+)
+"""What comes after counts."""
+NO_SPEECH = re.compile(r"[{}<>=\[\]\\|_@#^~`]|\w\(")
+"""Marks of code: nobody says that to a drone."""
+PLAIN_NO = re.compile(r"(?:^|[,.;!?] )(?:no|nope|nah|never|do not|hell no|absolutely not|keep out|stay out)\b")
+GENTLE = re.compile(
+    r"\bbut (?:please )?(?:be |go |fly |do it )?(?:very )?(?:careful|carefully|slow|slowly|gently|gentle|watch out"
+    r"|quick|quickly|hurry(?: up)?|take care|mind your step)\b"
+)
+"""A condition that changes nothing."""
+ASKS = re.compile(
+    r"(?:^|[,.;] )(?:(?:well|so|and|but|um|uh|sorry|hey|ok|yes|no|right) )*(?:"
+    r"(?:is|are|was|were|does|did|can|could|would|will|should|have|has|am|shall)"
+    r" (?:not )?(?:it|that|this|there|you|i|we|they|the"
+    r"|he|she|any\w+|some\w+|nobody)\b|do (?:you|i|we|they)\b|(?:which|where|whose|why|how|when|what) \w+"
+    r"|who (?:is|are|was|did|told|says)\b|safe for|why$|how$|where$|who$|really \?)"
+)
+NOT_ASKED = re.compile(
+    r"\bwhy (?:not|would it not)\b|\b(?:which one|what was that|how should i know|how would i know|how am i)\b"
+    r"|\bare you (?:crazy|mad|insane|nuts|kidding|serious|out of your mind)\b|\bhave you lost your mind\b|\bwhat the\b"
+)
+
+
+def corrected(words: str) -> str:
+    """What is said after the last correction, if anything is."""
+    parts = CORRECTION.split(words)
+    return next((part for part in reversed(parts) if part.strip(" ,.;?!")), words)
+
+
+def asks_back(words: str) -> bool:
+    """Whether the answer is, or holds, a question; ``why not`` and ``are you mad`` are none."""
+    return "?" in words or ASKS.search(NOT_ASKED.sub("", words)) is not None

@@ -1,0 +1,52 @@
+"""Slips of typing and hearing that may hide a doubt, a condition or a negation beside a Yes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import pairwise
+
+
+def _words(text: str) -> frozenset[str]:
+    return frozenset(text.split())
+
+
+_CAUTION = _words(
+    "not no never dont isnt cant wont without nobody none think maybe perhaps probably possibly guess guessing "
+    "suppose believe should could might would hope hopefully seems looks likely almost fairly pretty sure unsure "
+    "if unless until when but except only though what where which why how who are toxic unsafe danger dangerous "
+    "poison blocked says said just kidding haha idea percent fire leaning something anyone try check wait stop "
+    "have does "
+)
+_SHORTEST_WHOLE = 3
+_SHORTEST_PART = 3
+
+
+def is_slip(a: str, b: str) -> bool:
+    """Whether one letter too many, too few, wrong, or two exchanged make the one of the other."""
+    if abs(len(a) - len(b)) > 1:
+        return False
+    start = next((i for i, (x, y) in enumerate(zip(a, b, strict=False)) if x != y), min(len(a), len(b)))
+    rest_a, rest_b = a[start:], b[start:]
+    if rest_a[1:] == rest_b[1:] or rest_a[1:] == rest_b or rest_a == rest_b[1:]:
+        return True
+    return rest_a[:2] == rest_b[1::-1] and rest_a[2:] == rest_b[2:]
+
+
+def may_hide_caution(unknown: Sequence[str]) -> bool:
+    """Whether one of the unknown words of an answer may be a word of caution, mistyped or run into another.
+
+    Args:
+        unknown: the words, in order.
+    """
+    pairs = (a + b for a, b in pairwise(unknown))
+    return any(_hides(word) for word in (*unknown, *pairs))
+
+
+def _hides(word: str) -> bool:
+    if len(word) < _SHORTEST_WHOLE:
+        return word.isalpha()
+    if any(is_slip(word, caution) for caution in _CAUTION):
+        return True
+    ends = (word[:cut] for cut in range(_SHORTEST_PART, len(word)))
+    starts = (word[cut:] for cut in range(1, len(word) - _SHORTEST_PART + 1))
+    return not _CAUTION.isdisjoint((*ends, *starts))
