@@ -12,11 +12,13 @@ class LlmServer:
     """Serves chat completions until it is shut down.
 
     Attributes:
+        answer: what it says to a prompt.
         keys: the Authorization headers that came.
         prompts: what was asked, oldest first.
     """
 
     def __init__(self, answer: Callable[[str], str]) -> None:
+        self.answer = answer
         self.keys: list[str] = []
         self.prompts: list[str] = []
         server = self
@@ -27,7 +29,7 @@ class LlmServer:
                 prompt = body["messages"][0]["content"]
                 server.keys.append(self.headers.get("Authorization", ""))
                 server.prompts.append(prompt)
-                message = {"role": "assistant", "content": answer(prompt)}
+                message = {"role": "assistant", "content": server.answer(prompt)}
                 raw = json.dumps({"choices": [{"message": message}], "usage": {"completion_tokens": 7}}).encode()
                 self.send_response(200)
                 self.send_header("Content-Length", str(len(raw)))

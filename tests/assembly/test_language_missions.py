@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import io
+import os
+import threading
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
+from rich.console import Console
 from tests.assembly.llm_server import LlmServer, friendly
 
 from mintpilot.assembly import api
@@ -15,6 +19,7 @@ from mintpilot.core.events import Asked, Event
 from mintpilot.core.mission import Outcome
 from mintpilot.core.ports import SPEAKING_S, BetterWords, Operator, Understand
 from mintpilot.core.query import Answer, Question
+from mintpilot.interaction.terminal import TerminalOperator
 from mintpilot.recording.record import read_record
 
 KEY = "key-that-must-not-leak-1f7a"
@@ -133,3 +138,55 @@ def test_what_an_answer_says_beyond_the_question_saves_questions(tmp_path: Path)
     assert question.answer_text == said
     assert "small black cubic box" in question.also[0]
     assert "The answer also said" in (tmp_path / "run" / "report.html").read_text()
+
+
+class Screen(io.StringIO):
+    """A screen with somebody before it, who acts on what appears there."""
+
+    def __init__(self, react: Callable[[str], None]) -> None:
+        super().__init__()
+        self._react = react
+
+    def write(self, text: str) -> int:
+        written = super().write(text)
+        self._react(self.getvalue())
+        return written
+
+
+def test_the_first_words_are_on_the_screen_before_the_model_has_answered(server: LlmServer) -> None:
+    """The server does not answer before the question is on the screen; the person not before better words are."""
+    shown, (reads, writes) = threading.Event(), os.pipe()
+    answers = iter((b"no\n", b"yes, the black one\n"))
+    said = 0
+
+    def react(screen: str) -> None:
+        nonlocal said
+        if "Your answer" in screen:
+            shown.set()
+        if screen.count("other words:") > said and "Your answer" in screen.rpartition("other words:")[2]:
+            said += 1
+            os.write(writes, next(answers))
+
+    def answer(prompt: str) -> str:
+        assert shown.wait(60)
+        return friendly(prompt) or "{}"
+
+    server.answer = answer
+    screen = Screen(react)
+    with os.fdopen(reads) as stdin:
+        record = run_mission(
+            MEDICINE,
+            vehicle="kinematic",
+            llm="endpoint",
+            operator=lambda talk: TerminalOperator(
+                Console(file=screen, width=200), stdin, understand=talk.understand, lang=talk.lang
+            ),
+        )
+    os.close(writes)
+    assert record.outcome is Outcome.SUCCESS, record.reason
+    assert [(q.worded_by, q.answer_text) for q in record.questions] == [("tiny", "no"), ("tiny", "yes, the black one")]
+    for question in record.questions:
+        first, _, later = screen.getvalue().partition(question.text)
+        assert question.first_text in first
+        assert question.yes_means in later
+        assert question.no_means in later

@@ -61,6 +61,16 @@ def test_a_failing_model_is_told_once_and_left_alone_for_a_while() -> None:
     assert guarded.take_remarks() == ()
 
 
+def test_a_closed_model_is_not_started_again() -> None:
+    model = Sulking()
+    model.fails = False
+    guarded = GuardedModel(model, "sulking")
+    guarded.close()
+    with pytest.raises(DeviceError, match="closed"):
+        guarded.complete("?", schema=None, timeout_s=1.0)
+    assert (model.calls, model.closed) == (0, 1)
+
+
 class Odd:
     """Something that is no completion."""
 

@@ -37,6 +37,7 @@ class GuardedModel(LanguageModel):
         self._rests_until_s = float("-inf")
         self._remarks: list[str] = []
         self._has_failed = False
+        self._closed = False
 
     @property
     def name(self) -> str:
@@ -45,6 +46,8 @@ class GuardedModel(LanguageModel):
 
     def complete(self, prompt: str, *, schema: type | None, timeout_s: float) -> Completion:
         """One completion; see `LanguageModel.complete`. Every failure is a `DeviceError`."""
+        if self._closed:
+            raise DeviceError(f"language model '{self._name}' is closed: the mission is over")
         if self._clock() < self._rests_until_s:
             raise DeviceError(f"language model '{self._name}' failed {MOST_FAILURES} times and is left alone for now")
         try:
@@ -74,7 +77,8 @@ class GuardedModel(LanguageModel):
         return remarks
 
     def close(self) -> None:
-        """Closes the model, where it can be closed."""
+        """Closes the model, where it can be closed; from now on every call fails. What is then told is not kept."""
+        self._closed = True
         close = getattr(self._model, "close", None)
         if callable(close):
             close()
