@@ -75,7 +75,7 @@ class GridSearch:
         return self.lattice.path_cost(cells), cells
 
     def node_path(
-        self, source: int, target: int, allowed: Words, guide: Floats | None = None
+        self, source: int, target: int, allowed: Words, guide: Floats | None = None, work: Workspace | None = None
     ) -> tuple[float, NDArray[np.int64]]:
         """A* over nodes with any word of allowed moves; (infinity, empty) where there is no path.
 
@@ -84,8 +84,11 @@ class GridSearch:
             target: node to reach.
             allowed: moves of each node, at most those of the lattice.
             guide: exact lower bounds of the distance to the target, (size,); None: octile distance.
+            work: where to leave the nodes' states; None: in `work`. With the octile distance, the costs of all nodes
+                whose cost and octile distance to the target sum up to less than the result are exact.
         """
-        lattice, work, moves = self.lattice, self.work, self.lattice.moves
+        lattice, moves = self.lattice, self.lattice.moves
+        work = work or self.work
         if not (lattice.free[source] and lattice.free[target]):
             return np.inf, np.zeros(0, np.int64)
         tag = work.next_tag()

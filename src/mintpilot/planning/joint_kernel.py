@@ -7,7 +7,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from mintpilot.core.geometry import Floats, Ints
-from mintpilot.planning.buckets import PER_EDGE, RING, SLACK, lowest_bit, redundant
+from mintpilot.planning.buckets import CLOSED, PER_EDGE, RING, SLACK, lowest_bit, redundant
 from mintpilot.planning.lattice import NEAR, Words
 from mintpilot.planning.moves import NO_MOVE
 
@@ -27,6 +27,9 @@ that wrote this, and the move of the field search that led from the next node of
 
 SMALL = -1
 SPENT = -2
+
+ON_SHORE = -2
+"""`ON_SHORE` - v stands for the way to node v that enters no region, in the place of a label."""
 
 _DEAD = 64
 _FIRST = 32  # a node's `last` below it is still the move of the field search: the node has no label yet
@@ -66,32 +69,33 @@ def take_aim(
 
     Must come before the node's first label, which takes the place of the field's move in ``cells``.
     """
-    trail = np.empty(64, np.int64)
-    count = 0
-    while aims[node].tag != tag:
+    trail = np.empty(0, np.int64)
+    count, first = 0, node
+    while True:
+        last = cells[node].last
+        ahead = node - offset[last] if last != NO_MOVE else -1
+        if ahead < 0 or aims[ahead].tag == tag:
+            break
         if count == trail.size:
-            longer = np.empty(2 * count, np.int64)
+            longer = np.empty(2 * count + 64, np.int64)
             longer[:count] = trail
             trail = longer
         trail[count] = node
         count += 1
-        last = cells[node].last
-        if last == NO_MOVE:
-            break
-        node -= offset[last]
-    for i in range(count - 1, -1, -1):
-        here = trail[i]
-        last = cells[here].last
-        mask = region[here]
-        if last != NO_MOVE:
-            ahead = here - offset[last]
+        node = ahead
+    while True:
+        mask = region[node]
+        if ahead >= 0:
             mask = aims[ahead].mask
             if allowed[ahead] & NEAR:
                 for j in range(swept.shape[1]):
                     mask |= region[ahead + swept[last, j]]
-        aims[here].mask = mask
-        aims[here].last = last
-        aims[here].tag = tag
+        aims[node].mask, aims[node].last, aims[node].tag = mask, last, tag
+        if node == first:
+            break
+        count -= 1
+        ahead, node = node, trail[count]
+        last = cells[node].last
 
 
 @njit(cache=True, error_model="numpy")
@@ -117,6 +121,23 @@ def admit(
             above = i
         i = below
     return steps
+
+
+@njit(cache=True, error_model="numpy")
+def landings(
+    shore: Ints, cells: NDArray[np.void], tag: int, safe: NDArray[np.void], safe_tag: int, bound: float
+) -> tuple[Ints, Floats]:
+    """Nodes from which a way that has entered no region may enter its first one; costs by way of them; both sorted."""
+    due = np.empty(shore.size)
+    for i in range(shore.size):
+        node = shore[i]
+        reached = safe[node].tag == safe_tag and cells[node].tag == tag
+        due[i] = safe[node].g + cells[node].g if reached else np.inf
+    order = np.argsort(due, kind="mergesort")
+    count = 0
+    while count < order.size and due[order[count]] + SLACK < bound and due[order[count]] < np.inf:
+        count += 1
+    return shore[order[:count]], due[order[:count]]
 
 
 @njit(cache=True, error_model="numpy")
@@ -156,11 +177,14 @@ def search_labels(
     around: Ints,
     swept: Ints,
     region: NDArray[np.uint64],
+    shore: Ints,
     start: int,
     bound: float,
     budget: int,
     cells: NDArray[np.void],
     tag: int,
+    safe: NDArray[np.void],
+    safe_tag: int,
     aims: NDArray[np.void],
     pool: NDArray[np.void],
     sets: NDArray[np.void],
@@ -169,7 +193,9 @@ def search_labels(
     """All ways from start to goal that are best under some set of blocked regions.
 
     ``cells`` holds, under ``tag``, the exact distances to the goal on the optimistic map of every node that may matter.
-    ``bound`` is the cost of the way that enters no region, or infinity; that way itself is not found again.
+    ``bound`` is the cost of the way that enters no region, or infinity; that way itself is not found again. ``safe``
+    holds, under ``safe_tag``, what the search for it left: ways that have entered no region yet are taken from there,
+    and labels begin where such a way enters its first one.
 
     Returns:
         (number of ways in ``found``, some of which others beat, or `SMALL` when a buffer is too small, or `SPENT` when
@@ -183,16 +209,27 @@ def search_labels(
     best = np.full(sets.size, np.inf)
     numbered(region[start], sets, index, 0, bound, best)
     take_aim(start, aims, cells, tag, allowed, offset, swept, region)
-    append(pool, cells, head, 0, 0, 0.0, 0, start, -1, NO_MOVE)
-    count, known, used, queued, bucket, expanded, work = 0, 1, 1, 1, 0, 0, 0
-    while queued > 0:
-        label = head[bucket & (RING - 1)]
-        if label < 0:
-            bucket += 1
-            continue
-        head[bucket & (RING - 1)] = pool[label].next
-        queued -= 1
-        node, g, number, last = pool[label].node, pool[label].g, pool[label].set, pool[label].last
+    count, known, used, queued, bucket, expanded, work = 0, 1, 0, 0, 0, 0, 0
+    if region[start]:
+        waiting, due = shore[:0], np.zeros(0)
+        append(pool, cells, head, 0, 0, 0.0, 0, start, -1, NO_MOVE)
+        used, queued = 1, 1
+    else:
+        waiting, due = landings(shore, cells, tag, safe, safe_tag, bound)
+    landed = 0
+    while queued > 0 or landed < waiting.size:
+        if landed < waiting.size and due[landed] - f0 < (bucket + 1) / PER_EDGE:
+            node, number = waiting[landed], 0
+            g, last, label = safe[node].g, safe[node].last & (CLOSED - 1), ON_SHORE - node
+            landed += 1
+        else:
+            label = head[bucket & (RING - 1)]
+            if label < 0:
+                bucket += 1
+                continue
+            head[bucket & (RING - 1)] = pool[label].next
+            queued -= 1
+            node, g, number, last = pool[label].node, pool[label].g, pool[label].set, pool[label].last
         if last & _DEAD or sets[number].cap <= g + cells[node].g + SLACK:
             continue
         if used + length.size > pool.size or known + length.size > sets.size or count == found.size:
@@ -200,7 +237,7 @@ def search_labels(
         if work > budget:
             return SPENT, used, expanded
         mask = sets[number].mask
-        if aims[node].mask & ~mask == 0:
+        if label >= 0 and aims[node].mask & ~mask == 0:
             # The shortest way on from here enters nothing new: no other way on is better for any set of regions.
             cost = g + cells[node].g
             found[count].cost = cost
@@ -236,7 +273,11 @@ def search_labels(
                     if into == known:
                         work += known
                         known += 1
+            if label < 0 and into == number:
+                continue  # the search that enters no region has been there
             cost = g + length[k]
+            if safe[to].tag == safe_tag and safe[to].g <= cost + 1e-12:
+                continue
             f = cost + cells[to].g
             if sets[into].cap <= f + SLACK:
                 continue
@@ -260,22 +301,78 @@ def forget(pool: NDArray[np.void], used: int, cells: NDArray[np.void]) -> None:
 
 
 @njit(cache=True, error_model="numpy")
-def trace(pool: NDArray[np.void], label: int, aims: NDArray[np.void], offset: Ints) -> Ints:
-    """Nodes (n,) from the start to where the label is, and on to the goal."""
-    ahead, count = 0, 0
-    node = pool[label].node
+def traced(
+    labels: Ints,
+    start_cell: Ints,
+    pool: NDArray[np.void],
+    safe: NDArray[np.void],
+    aims: NDArray[np.void],
+    offset: Ints,
+    step: Ints,
+) -> tuple[Ints, Ints, Ints]:
+    """The ways of labels (n,): before them as they came, after them as they aim.
+
+    Returns:
+        (cells (m, 3) of all ways one after the other; where each ends there (n,); numbers of moves (n, 4) along 0, 1,
+        2 and 3 axes).
+    """
+    ends = np.zeros(labels.size, np.int64)
+    total = 0
+    for n in range(labels.size):
+        total += 1 + moves_of(labels[n], pool, safe, aims, offset, ends[:0])
+        ends[n] = total
+    cells = np.empty((total, 3), np.int64)
+    kinds = np.zeros((labels.size, 4), np.int64)
+    moves = np.empty(total, np.int64)
+    at = 0
+    for n in range(labels.size):
+        count = moves_of(labels[n], pool, safe, aims, offset, moves)
+        cells[at] = start_cell
+        for i in range(count):
+            k, sign = (moves[i], 1) if moves[i] >= 0 else (-1 - moves[i], -1)
+            at += 1
+            along = 0
+            for axis in range(3):
+                cells[at, axis] = cells[at - 1, axis] + sign * step[k, axis]
+                along += abs(step[k, axis])
+            kinds[n, along] += 1
+        at += 1
+    return cells, ends, kinds
+
+
+@njit(cache=True, error_model="numpy")
+def moves_of(
+    label: int, pool: NDArray[np.void], safe: NDArray[np.void], aims: NDArray[np.void], offset: Ints, moves: Ints
+) -> int:
+    """Number of moves of a label's way; the moves themselves if there is room (-1 - k: move k the other way round)."""
+    behind, i = 0, label
+    while i >= 0:
+        behind += pool[i].last & ~_DEAD != NO_MOVE
+        i = pool[i].parent
+    node = ON_SHORE - i if i <= ON_SHORE else -1
+    while node >= 0:
+        last = safe[node].last & (CLOSED - 1)
+        behind += last != NO_MOVE
+        node = node - offset[last] if last != NO_MOVE else -1
+    count, node = behind, pool[label].node
     while aims[node].last != NO_MOVE:
-        ahead += 1
+        if moves.size:
+            moves[count] = -1 - aims[node].last
+        count += 1
         node -= offset[aims[node].last]
+    if not moves.size:
+        return count
     i = label
     while i >= 0:
-        count += 1
+        last = pool[i].last & ~_DEAD
+        if last != NO_MOVE:
+            behind -= 1
+            moves[behind] = last
         i = pool[i].parent
-    path = np.empty(count + ahead, np.int64)
-    i = label
-    for at in range(count - 1, -1, -1):
-        path[at] = pool[i].node
-        i = pool[i].parent
-    for at in range(count, count + ahead):
-        path[at] = path[at - 1] - offset[aims[path[at - 1]].last]
-    return path
+    node = ON_SHORE - i if i <= ON_SHORE else -1
+    while behind > 0:
+        last = safe[node].last & (CLOSED - 1)
+        behind -= 1
+        moves[behind] = last
+        node -= offset[last]
+    return count

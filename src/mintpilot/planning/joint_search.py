@@ -22,7 +22,7 @@ from numpy.typing import ArrayLike, NDArray
 from mintpilot.core.geometry import Bools, Floats, Ints
 from mintpilot.planning import joint_kernel
 from mintpilot.planning.decision_list import DecisionList, Way, sorted_ways
-from mintpilot.planning.grid_search import GridSearch
+from mintpilot.planning.grid_search import GridSearch, Workspace
 from mintpilot.planning.lattice import cost_of_moves
 from mintpilot.planning.lazy import lazy_ways
 from mintpilot.planning.overlay import Overlay, closed_moves, followed, overlay_of
@@ -61,6 +61,7 @@ class JointSearch:
         self.labels = 0
         """Labels that the last search made."""
         self._pool: NDArray[np.void] = np.empty(min(1 << 14, self.effort.labels), joint_kernel.LABEL)
+        self._safe = Workspace(self.grid.lattice.size)
         self._aims: NDArray[np.void] = np.zeros(self.grid.lattice.size, joint_kernel.AIM)
         self._sets: NDArray[np.void] = np.empty(1 << 10, joint_kernel.ENTERED)
         self._found: NDArray[np.void] = np.empty(1 << 10, joint_kernel.FOUND)
@@ -78,16 +79,18 @@ class JointSearch:
             return DecisionList(ways=())
         chosen = self._chosen(*ends)
         overlay = self._overlay(chosen)
-        bound, safe_path = self.grid.node_path(*ends, overlay.without)
-        ways = [self._way(safe_path, overlay)] if np.isfinite(bound) else []
-        self.grid.node_field(ends[1], ends[0], bound, self._opened(chosen))
-        done, more = self._labels(ends[0], bound, overlay)
-        result: DecisionList[NDArray[np.int64]] = DecisionList(ways=())
-        if not done:
+        bound, safe_path = self.grid.node_path(*ends, overlay.without, work=self._safe)
+        safe = [self._way(safe_path, overlay)] if np.isfinite(bound) else []
+        self.grid.node_field(ends[1], ends[0], bound, overlay.near)
+        found = self._labels(ends[0], bound, overlay)
+        result: DecisionList[Ints] = DecisionList(ways=())
+        if found is None:
             result = self._branch(*ends, overlay, chosen)
-            more = list(result.ways)
+            ways = sorted_ways([*safe, *result.ways])
+        else:
+            ways = self._traced(found, safe, ends[0])
         return DecisionList(
-            ways=tuple(self._named(w, chosen) for w in sorted_ways([*ways, *more])),
+            ways=tuple(self._named(w, chosen) for w in ways),
             complete=result.complete and len(chosen) == len(self.regions),
             left_out=tuple(r for r in range(len(self.regions)) if r not in set(chosen)),
             not_expanded=result.not_expanded,
@@ -142,8 +145,8 @@ class JointSearch:
             self._overlays[chosen] = overlay_of(self.grid.lattice, nodes, self._opened(chosen))
         return self._overlays[chosen]
 
-    def _labels(self, start: int, bound: float, overlay: Overlay) -> tuple[bool, list[Way[NDArray[np.int64]]]]:
-        """The search over labels; needs the field of distances to the goal in the workspace."""
+    def _labels(self, start: int, bound: float, overlay: Overlay) -> list[Way[int]] | None:
+        """Ways as labels; None when the budget is spent. Needs the field of distances to the goal in the workspace."""
         lattice, work, moves = self.grid.lattice, self.grid.work, self.grid.lattice.moves
         count = joint_kernel.SMALL
         while count < 0:
@@ -157,11 +160,14 @@ class JointSearch:
                 lattice.around,
                 lattice.swept,
                 overlay.region,
+                overlay.shore,
                 start,
                 bound,
                 self.effort.comparisons,
                 work.cells,
                 work.tag,
+                self._safe.cells,
+                self._safe.tag,
                 self._aims,
                 self._pool,
                 self._sets,
@@ -170,18 +176,33 @@ class JointSearch:
             if count < 0:
                 joint_kernel.forget(self._pool, self.labels, work.cells)
                 if count == joint_kernel.SPENT or not self._grow():
-                    return False, []
-        return True, [
-            self._way(joint_kernel.trace(self._pool, i, self._aims, lattice.offset), overlay)
-            for i in self._unbeaten(count)
-        ]
+                    return None
+        found = self._found[:count]
+        masks = self._sets["mask"][self._pool["set"][found["label"]]]
+        of_all = zip(found["cost"].tolist(), masks.tolist(), found["label"].tolist(), strict=True)
+        return [Way(cost=cost, mask=mask, path=label) for cost, mask, label in of_all]
 
-    def _unbeaten(self, count: int) -> list[int]:
-        """Of the labels found, those that no other one beats."""
-        labels = self._found["label"][:count]
-        masks = self._sets["mask"][self._pool["set"][labels]]
-        found = zip(self._found["cost"][:count].tolist(), masks.tolist(), labels.tolist(), strict=True)
-        return [way.path for way in sorted_ways(Way(cost=c, mask=m, path=i) for c, m, i in found)]
+    def _traced(self, found: list[Way[int]], safe: list[Way[Ints]], start: int) -> tuple[Way[Ints], ...]:
+        """Of the ways found those that no other one beats, as paths."""
+        lattice = self.grid.lattice
+        rivals = [Way(cost=way.cost, mask=way.mask, path=-1) for way in safe]
+        ways = sorted_ways([*rivals, *found])
+        labels = np.array([way.path for way in ways if way.path >= 0], np.int64)
+        cells, ends, kinds = joint_kernel.traced(
+            labels,
+            lattice.cells(np.array([start]))[0],
+            self._pool,
+            self._safe.cells,
+            self._aims,
+            lattice.offset,
+            lattice.moves.step.astype(np.int64),
+        )
+        paths = iter(zip(np.split(cells, ends), kinds.tolist(), strict=False))
+        made = []
+        for way in ways:
+            path, moves = next(paths) if way.path >= 0 else (safe[0].path, None)
+            made.append(Way(cost=cost_of_moves(moves) if moves else way.cost, mask=way.mask, path=path))
+        return tuple(made)
 
     def _grow(self) -> bool:
         """Makes room for more labels and ways; False when the budget is spent."""
@@ -209,6 +230,8 @@ class JointSearch:
 
     def _named(self, way: Way[Ints], chosen: tuple[int, ...]) -> Way[Ints]:
         """The way with its mask in terms of all regions instead of the chosen ones."""
+        if len(chosen) == len(self.regions):
+            return way
         mask = sum(1 << r for bit, r in enumerate(chosen) if way.mask >> bit & 1)
         return Way(cost=way.cost, mask=mask, path=way.path)
 

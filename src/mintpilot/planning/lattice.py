@@ -11,6 +11,7 @@ padded grid, a *cell* is ``[z, y, x]`` in the caller's.
 from __future__ import annotations
 
 import itertools
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -79,7 +80,7 @@ class Lattice:
         return cost_of_moves(np.bincount(np.abs(np.diff(cells, axis=0)).sum(axis=1), minlength=4))
 
 
-def cost_of_moves(kinds: Ints) -> float:
+def cost_of_moves(kinds: Sequence[int] | Ints) -> float:
     """Length in edges of so many moves (4,) along 0, 1, 2 and 3 axes."""
     return float(kinds[1]) + float(kinds[2]) * 2**0.5 + float(kinds[3]) * 3**0.5
 

@@ -23,6 +23,8 @@ class Overlay:
     """Allowed moves with all regions passable; `NEAR` is set where one of them is next to the node."""
     without: Words
     """Allowed moves that touch no region."""
+    shore: Ints
+    """Nodes (n,) outside all regions from which one move may touch a region."""
 
 
 def overlay_of(lattice: Lattice, regions: Sequence[Ints], closed: Words) -> Overlay:
@@ -38,11 +40,14 @@ def overlay_of(lattice: Lattice, regions: Sequence[Ints], closed: Words) -> Over
         region[nodes] |= np.uint64(1 << bit)
     near = closed.copy()
     without = closed.copy()
+    shore = np.zeros(0, np.int64)
     if regions:
         nodes = np.concatenate(list(regions))
         nodes = nodes[lattice.free[nodes] == 1]
-        _close(without, near, lattice.free, _mark(lattice, nodes), lattice.around, lattice.moves.needs, nodes)
-    return Overlay(region=region, near=near, without=without)
+        rest = _mark(lattice, nodes)
+        marked = _close(without, near, lattice.free, rest, lattice.around, lattice.moves.needs, nodes)
+        shore = marked[region[marked] == 0]
+    return Overlay(region=region, near=near, without=without, shore=shore)
 
 
 def closed_moves(lattice: Lattice, allowed: Words, regions: Iterable[Ints]) -> Words:
@@ -71,8 +76,10 @@ def _close(
     around: Ints,
     needs: NDArray[np.uint32],
     nodes: Ints,
-) -> None:
-    """Takes from ``without`` the moves that touch the nodes (not free in ``rest``); marks their neighbours in near."""
+) -> Ints:
+    """Takes from ``without`` the moves that touch the nodes (not free in ``rest``); marks and returns all near them."""
+    marked = np.empty(min(free.size, nodes.size * around.size), np.int64)
+    count = 0
     for node in nodes:
         for i in range(around.size):
             other = node + around[i]
@@ -80,6 +87,9 @@ def _close(
                 continue
             near[other] |= NEAR
             without[other] &= moves_at(rest, around, needs, other) if rest[other] else np.uint64(0)
+            marked[count] = other
+            count += 1
+    return marked[:count].copy()
 
 
 @njit(cache=True, error_model="numpy")
