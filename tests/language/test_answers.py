@@ -43,10 +43,8 @@ def test_answers_are_understood_and_no_yes_is_made_up(question: str, reading: st
 
 
 @settings(deadline=None, max_examples=300)
-@given(st.sampled_from([c for c in CASES if c.reading != "yes"]), st.sampled_from(["'", ",", ".", "?"]))
+@given(st.sampled_from([c for c in CASES if c.reading != "yes"]), st.sampled_from(["'", ",", "."]))
 def test_missing_punctuation_makes_no_yes(case: AnswerCase, mark: str) -> None:
-    if mark == "?" and case.text.strip("?") in {c.text for c in CASES if c.reading == "yes"} | {"safe", "okay", "red"}:
-        return
     assert understand_answer(case.text.replace(mark, ""), case.question).reading is not Reading.YES
 
 

@@ -2,18 +2,32 @@
 
 from __future__ import annotations
 
+import asyncio
 import json
+import subprocess
+import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from importlib.util import find_spec
 from typing import Any
 
 import pytest
 from pydantic import BaseModel
 
-from mintpilot.core.errors import DeviceError, InputError
+from mintpilot.core.errors import DeviceError, InputError, MissingPartError
+from mintpilot.language import gguf
+from mintpilot.language.answers import Reading
 from mintpilot.language.endpoint import EndpointModel, OutputMode
+from mintpilot.language.forms import AnswerReading, read_form
+from mintpilot.language.reading import parse_with_model, understand_with_model
+from mintpilot.language.wording import ModelWording
+
+from . import questions
+
+pytest.importorskip("pydantic_ai", reason="the client is not installed: pip install 'mintpilot[llm]'")
 
 KEY = "key-that-must-not-leak"
 
@@ -63,7 +77,12 @@ def reply(handler: BaseHTTPRequestHandler, body: bytes, status: int = 200, **hea
 
 
 def completion(text: str) -> bytes:
-    answer = {"choices": [{"message": {"role": "assistant", "content": text}}], "usage": {"completion_tokens": 7}}
+    message = {"role": "assistant", "content": text}
+    answer = {
+        "id": "1", "object": "chat.completion", "created": 1, "model": "tiny",
+        "choices": [{"index": 0, "finish_reason": "stop", "message": message}],
+        "usage": {"prompt_tokens": 3, "completion_tokens": 7, "total_tokens": 10},
+    }  # fmt: skip
     return json.dumps(answer).encode()
 
 
@@ -169,3 +188,84 @@ def test_the_environment_names_the_server(server: Server) -> None:
     environment = {"MINTPILOT_LLM_URL": server.url, "MINTPILOT_LLM_MODEL": "tiny"}
     assert EndpointModel(environment=environment).complete("?", schema=None, timeout_s=5).text == "hello"
     assert "Authorization" not in server.requests[0][1]
+
+
+def test_nothing_else_of_the_environment_is_sent(server: Server, monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in ("OPENAI_ORG_ID", "OPENAI_PROJECT_ID", "OPENAI_ADMIN_KEY", "OPENAI_CUSTOM_HEADERS"):
+        monkeypatch.setenv(name, "X-Own: must-not-travel")
+    model(server).complete("?", schema=None, timeout_s=5)
+    _, headers, _ = server.requests[0]
+    assert "must-not-travel" not in str(headers)
+    assert {name.lower() for name in headers} <= {
+        *("host", "content-type", "content-length", "accept", "connection", "user-agent"),
+        *("authorization", "accept-encoding"),
+    }
+
+
+def test_it_works_inside_a_running_event_loop(server: Server) -> None:
+    async def inside() -> str:
+        return model(server).complete("?", schema=None, timeout_s=5).text
+
+    assert asyncio.run(inside()) == "hello"
+
+
+def test_the_client_is_imported_only_where_a_server_is_configured() -> None:
+    code = (
+        "import sys, mintpilot.language, mintpilot.language.endpoint, mintpilot.assembly.talk; "
+        "print(sorted({'pydantic_ai', 'openai', 'httpx2'} & set(sys.modules)))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
+
+
+def test_without_the_client_the_install_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("mintpilot.language.endpoint.find_spec", lambda _: None)
+    with pytest.raises(MissingPartError, match=r"pip install 'mintpilot\[llm\]'"):
+        EndpointModel("http://localhost:1/v1", "tiny", environment={})
+
+
+SERVED = """
+import sys, time, xllamacpp
+p = xllamacpp.CommonParams()
+p.model.path, p.n_ctx, p.n_parallel, p.hostname, p.port = sys.argv[1], 2048, 1, "127.0.0.1", 0
+p.cpuparams.n_threads = p.cpuparams_batch.n_threads = 1
+server = xllamacpp.Server(p)
+print(server.listening_address, flush=True)
+sys.stdin.read()
+"""
+
+
+@pytest.fixture(scope="module")
+def llama() -> Iterator[str]:
+    """A real OpenAI-compatible server on this machine, with the embedded model's file."""
+    if find_spec("xllamacpp") is None or find_spec(gguf.PARTS[0]) is None:
+        pytest.skip("xllamacpp or the embedded model's parts are not installed")
+    path = str(gguf.find_model())
+    process = subprocess.Popen(
+        [sys.executable, "-c", SERVED, path], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
+        text=True,
+    )  # fmt: skip
+    assert process.stdout is not None
+    address = next(line.strip() for line in process.stdout if line.startswith("http"))
+    yield f"{address}/v1"
+    process.kill()
+    process.communicate()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("mode", OutputMode)
+def test_a_real_server_words_parses_proposes_and_reads(llama: str, mode: OutputMode) -> None:
+    real = EndpointModel(llama, "qwen", mode=mode, environment={})
+    wording = ModelWording(template=lambda *_, **__: questions.SMOKE, model=real, timeout_s=60)
+    assert wording.improve(questions.SMOKE).query == questions.SMOKE.query
+    assert len(wording.trials) == 1
+    assert wording.trials[0].tokens > 0
+    slang = "Hey, so the red box has got medicine that the injured person needs, would you be a dear"
+    with suppress(InputError):
+        assert parse_with_model(slang, real, timeout_s=60).subgoals
+    said = understand_with_model("my uncle never made it", questions.ROOM, real, timeout_s=60)
+    assert said.reading in Reading
+    answer = real.complete("Is Paris in France? Answer yes or no.", schema=AnswerReading, timeout_s=60)
+    assert read_form(answer.text, AnswerReading) is not None
+    with pytest.raises(DeviceError, match="did not answer within"):
+        real.complete("Tell a long story.", schema=None, timeout_s=0.05)

@@ -1,25 +1,25 @@
 """Any OpenAI-compatible server: a vendor's, or Ollama, vLLM, llama.cpp on one's own machine.
 
-Plain HTTP from the standard library: no client with retries of its own stands between the time-out and the wire, no
-redirect carries the key elsewhere, and nothing is logged.
+Spoken to through `pydantic-ai` and the `openai` client, without the client's own retries. One deadline holds for the
+whole call, whatever the server does; no redirect carries the key elsewhere; the answer's bytes are counted before
+they are read; nothing is logged. The clients are imported when the adapter is made, never before.
 """
 
 from __future__ import annotations
 
+import asyncio
 import json
 import os
 import time
 from collections.abc import Mapping
 from enum import StrEnum
-from http.client import HTTPException
-from typing import Any
-from urllib.error import HTTPError, URLError
+from importlib import import_module
+from importlib.util import find_spec
 from urllib.parse import urlsplit
-from urllib.request import HTTPRedirectHandler, Request, build_opener
 
-from pydantic import BaseModel, ValidationError
+from pydantic import BaseModel
 
-from mintpilot.core.errors import DeviceError, InputError
+from mintpilot.core.errors import DeviceError, InputError, MintPilotError, MissingPartError
 from mintpilot.core.ports import Completion, LanguageModel
 from mintpilot.language.deadline import within
 
@@ -27,9 +27,7 @@ URL_VARIABLE = "MINTPILOT_LLM_URL"
 MODEL_VARIABLE = "MINTPILOT_LLM_MODEL"
 KEY_VARIABLES = ("MINTPILOT_LLM_KEY", "OPENAI_API_KEY")
 """Where the key is looked for; nowhere else."""
-
-_MOST_BYTES = 1_000_000
-_MOST_TOKENS = 400
+_PARTS = ("pydantic_ai", "openai", "httpx2")
 
 
 class OutputMode(StrEnum):
@@ -52,6 +50,7 @@ class EndpointModel(LanguageModel):
 
     Raises:
         InputError: no usable address, or no model name.
+        MissingPartError: the client is not installed.
     """
 
     def __init__(
@@ -74,76 +73,39 @@ class EndpointModel(LanguageModel):
             )
         if not self._model:
             raise InputError(f"no language model is named for {parts.hostname}: set {MODEL_VARIABLE}, e.g. 'qwen3:4b'")
+        if any(find_spec(part) is None for part in _PARTS):
+            raise MissingPartError(
+                "a language model server is spoken to with 'pydantic-ai': pip install 'mintpilot[llm]'"
+            )
+        # Two seconds of importing belong to the start, not to the deadline of the first question.
+        self._client = import_module("mintpilot.language.endpoint_client")
 
     def complete(self, prompt: str, *, schema: type | None, timeout_s: float) -> Completion:
         """One completion; see `LanguageModel.complete`."""
         started_s = time.monotonic()
-        body = json.dumps(self._body(prompt, schema)).encode()
-        raw = within(lambda: self._post(body, timeout_s), timeout_s, f"language model '{self._model}'")
-        try:
-            reply = _Reply.model_validate_json(raw)
-            text = reply.choices[0].message.content
-        except (ValidationError, IndexError) as error:
-            raise DeviceError(
-                f"language model '{self._model}' sent no chat completion: check that {URL_VARIABLE} ends in /v1"
-            ) from error
-        return Completion(
-            text=text,
-            model=self._model,
-            seconds=time.monotonic() - started_s,
-            tokens=reply.usage.completion_tokens if reply.usage else 0,
-        )
-
-    def _body(self, prompt: str, schema: type | None) -> dict[str, Any]:
-        body: dict[str, Any] = {"model": self._model, "temperature": 0, "max_tokens": _MOST_TOKENS}
-        if schema is not None and issubclass(schema, BaseModel):
-            form = schema.model_json_schema()
-            if self._mode is OutputMode.NATIVE:
-                json_schema = {"name": schema.__name__.strip("_"), "schema": form}
-                body["response_format"] = {"type": "json_schema", "json_schema": json_schema}
-            else:
-                prompt = f"{prompt}\n\nAnswer with JSON of this schema only: {json.dumps(form)}"
-        return {**body, "messages": [{"role": "user", "content": prompt}]}
-
-    def _post(self, body: bytes, timeout_s: float) -> bytes:
-        headers = {"Content-Type": "application/json"}
+        form = schema if schema is not None and issubclass(schema, BaseModel) else None
+        if form is not None and self._mode is OutputMode.PROMPTED:
+            prompt = f"{prompt}\n\nAnswer with JSON of this schema only: {json.dumps(form.model_json_schema())}"
+            form = None
         key = next((self._environment[name] for name in KEY_VARIABLES if self._environment.get(name)), "")
-        if key:
-            headers["Authorization"] = f"Bearer {key}"
-        request = Request(f"{self._url}/chat/completions", data=body, headers=headers, method="POST")
-        try:
-            with build_opener(_NoRedirect).open(request, timeout=timeout_s) as response:
-                raw: bytes = response.read(_MOST_BYTES + 1)
-        except HTTPError as error:
-            error.close()
-            raise DeviceError(
-                f"language model server answered {error.code}: check key, address and the model's name '{self._model}'"
-            ) from None
-        except (URLError, HTTPException, OSError, ValueError) as error:
-            reason = type(getattr(error, "reason", error)).__name__
-            raise DeviceError(f"language model server cannot be reached ({reason}): check {URL_VARIABLE}") from None
-        if len(raw) > _MOST_BYTES:
-            raise DeviceError(f"language model server sent more than {_MOST_BYTES} bytes: its answer was thrown away")
-        return raw
+        call = self._client.Call(url=self._url, model=self._model, key=key, prompt=prompt, form=form)
+        who = f"language model '{self._model}'"
+
+        def ask() -> tuple[str, int]:
+            try:
+                answer: tuple[str, int] = asyncio.run(asyncio.wait_for(self._client.ask(call), timeout_s))
+            except TimeoutError:
+                raise DeviceError(f"{who} did not answer within {timeout_s:g} s: going on without it") from None
+            except MintPilotError:
+                raise
+            except Exception as error:  # whatever the client raises: its words may hold what was sent, so only the type
+                raise self._client.told(error, self._model, URL_VARIABLE) from None
+            return answer
+
+        # A thread of its own: the port stays synchronous inside any event loop, and a loop that hangs hangs alone.
+        text, tokens = within(ask, timeout_s + _GRACE_S, who)
+        return Completion(text=text, model=self._model, seconds=time.monotonic() - started_s, tokens=tokens)
 
 
-class _NoRedirect(HTTPRedirectHandler):
-    def redirect_request(self, *_: object) -> None:
-        """Follows none: the key must not travel to another address."""
-
-
-class _Message(BaseModel):
-    content: str
-
-
-class _Choice(BaseModel):
-    message: _Message
-
-
-class _Usage(BaseModel):
-    completion_tokens: int = 0
-
-
-class _Reply(BaseModel):
-    choices: list[_Choice]
-    usage: _Usage | None = None
+_GRACE_S = 0.1
+"""For closing the connection after the deadline."""

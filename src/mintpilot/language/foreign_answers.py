@@ -16,7 +16,8 @@ _TABLES: Mapping[str, Mapping[str, str]] = {
         "|los|nur zu|ja bitte"
         "|ja genau|klar doch|alles klar|bestätigt|bestätige|freigegeben|korrekt|absolut|definitiv|gerne|okay|ok",
         NO: "nein|nee|nö|ne|niemals|nie|auf keinen fall|keinesfalls|falsch|bloß nicht|nein danke|lieber nicht"
-        "|besser nicht|nicht|stimmt nicht|das stimmt nicht|gar nicht|überhaupt nicht|keineswegs|negativ|das ist falsch|mach das nicht"
+        "|besser nicht|nicht|stimmt nicht|das stimmt nicht|gar nicht|überhaupt nicht|keineswegs|negativ"
+        "|das ist falsch|mach das nicht"
         "|zu gefährlich|gefährlich|giftig|nicht durchfliegen|niemand|keiner|leer|der andere|die andere"
         "|das andere|das ist nicht sicher|das ist gefährlich|es ist gefährlich|da ist niemand|es ist niemand da",
         UNSURE: "weiß nicht|ich weiß nicht|ich weiß es nicht|keine ahnung|vielleicht|möglicherweise"
