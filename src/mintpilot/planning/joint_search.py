@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from mintpilot.core.geometry import Bools, Floats, Ints
-from mintpilot.planning import joint_kernel
+from mintpilot.planning import joint_kernel, joint_labels, joint_paths
 from mintpilot.planning.decision_list import DecisionList, Way, sorted_ways
 from mintpilot.planning.grid_search import GridSearch, Workspace
 from mintpilot.planning.lattice import cost_of_moves
@@ -60,11 +60,11 @@ class JointSearch:
         """Joint searches made so far."""
         self.labels = 0
         """Labels that the last search made."""
-        self._pool: NDArray[np.void] = np.empty(min(1 << 14, self.effort.labels), joint_kernel.LABEL)
+        self._pool: NDArray[np.void] = np.empty(min(1 << 14, self.effort.labels), joint_labels.LABEL)
         self._safe = Workspace(self.grid.lattice.size)
-        self._aims: NDArray[np.void] = np.zeros(self.grid.lattice.size, joint_kernel.AIM)
-        self._sets: NDArray[np.void] = np.empty(1 << 10, joint_kernel.ENTERED)
-        self._found: NDArray[np.void] = np.empty(1 << 10, joint_kernel.FOUND)
+        self._aims: NDArray[np.void] = np.zeros(self.grid.lattice.size, joint_paths.AIM)
+        self._sets: NDArray[np.void] = np.empty(1 << 10, joint_labels.ENTERED)
+        self._found: NDArray[np.void] = np.empty(1 << 10, joint_labels.FOUND)
         self._overlays: dict[tuple[int, ...], Overlay] = {}
 
     def between(self, start: ArrayLike, goal: ArrayLike) -> DecisionList[Ints]:
@@ -174,7 +174,7 @@ class JointSearch:
                 self._found,
             )
             if count < 0:
-                joint_kernel.forget(self._pool, self.labels, work.cells)
+                joint_labels.forget(self._pool, self.labels, work.cells)
                 if count == joint_kernel.SPENT or not self._grow():
                     return None
         found = self._found[:count]
@@ -188,7 +188,7 @@ class JointSearch:
         rivals = [Way(cost=way.cost, mask=way.mask, path=-1) for way in safe]
         ways = sorted_ways([*rivals, *found])
         labels = np.array([way.path for way in ways if way.path >= 0], np.int64)
-        cells, ends, kinds = joint_kernel.traced(
+        cells, ends, kinds = joint_paths.traced(
             labels,
             lattice.cells(np.array([start]))[0],
             self._pool,
@@ -208,9 +208,9 @@ class JointSearch:
         """Makes room for more labels and ways; False when the budget is spent."""
         if self._pool.size >= self.effort.labels:
             return False
-        self._pool = np.empty(min(4 * self._pool.size, self.effort.labels), joint_kernel.LABEL)
-        self._sets = np.empty(4 * self._sets.size, joint_kernel.ENTERED)
-        self._found = np.empty(4 * self._found.size, joint_kernel.FOUND)
+        self._pool = np.empty(min(4 * self._pool.size, self.effort.labels), joint_labels.LABEL)
+        self._sets = np.empty(4 * self._sets.size, joint_labels.ENTERED)
+        self._found = np.empty(4 * self._found.size, joint_labels.FOUND)
         return True
 
     def _branch(
