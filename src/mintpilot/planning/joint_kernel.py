@@ -144,10 +144,8 @@ def search_labels(
             if label < 0 and into == number:
                 continue  # the search that enters no region has been there
             cost = g + length[k]
-            if safe[to].tag == safe_tag and safe[to].g <= cost + 1e-12:
-                continue
             f = cost + cells[to].g
-            if sets[into].cap <= f + SLACK:
+            if sets[into].cap <= f + SLACK or (safe[to].tag == safe_tag and safe[to].g <= cost + 1e-12):
                 continue
             compared = admit(pool, cells, sets, to, cost, entered)
             work += abs(compared)
