@@ -25,6 +25,8 @@ from mintpilot.mission.schema import LanguageSpec
 
 TEMPLATE = "template"
 """Name of the model that is none."""
+LONGEST_ANSWER = 300
+"""Characters; what is longer is no answer to a yes/no question, whatever is in it."""
 SCREEN_S = 8.0
 """Better words for a screen may take this long: the first ones stand there meanwhile. Who speaks waits far shorter."""
 
@@ -76,6 +78,8 @@ class Talk(AbstractContextManager["Talk"]):
 
     def understand(self, text: str, question: Question, timeout_s: float) -> Meaning:
         """What a free answer means: by rules, and what they do not know with the model's help, in English only."""
+        if len(text) > LONGEST_ANSWER:
+            return Meaning(reply=None)
         understood = understand_in(text, question, self.lang)
         if understood.reading is Reading.OTHER and self._model is not None and self.lang == ENGLISH:
             # The model is asked twice.
