@@ -13,6 +13,7 @@ from tests.mission.scenes import hall
 from mintpilot.assembly.api import check_mission, plan_mission, run_mission
 from mintpilot.assembly.guarded_model import MOST_FAILURES, REST_S, GuardedModel
 from mintpilot.assembly.talk import Talk, talk_for
+from mintpilot.cli.demos import demo_mission
 from mintpilot.core.errors import DeviceError, InputError, UnknownNameError
 from mintpilot.core.mission import Outcome
 from mintpilot.core.ports import Completion, LanguageModel
@@ -207,3 +208,18 @@ def test_a_model_reads_an_instruction_that_the_rules_refuse() -> None:
     liar = FunctionModel(lambda _: '{"steps": ["go to the exit"]}')
     with pytest.raises(InputError, match="not understood"):
         run_mission(file, vehicle="kinematic", llm=liar)
+
+
+def test_thinking_ahead_costs_one_proposal_only(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Every history of answers is thought through; only what would be asked now is worth a model's time."""
+    monkeypatch.setattr("mintpilot.strategies.mint.gain_bound_bits", lambda *_: 2.0)
+    prompts: list[str] = []
+    report = plan_mission(demo_mission("medicine"), llm=FunctionModel(lambda prompt: prompts.append(prompt) or "{}"))
+    assert report.expected_questions > 1
+    assert sum("Propose up to" in prompt for prompt in prompts) == 1
+    assert report.query is not None
+
+
+def test_words_too_long_to_be_an_answer_are_none() -> None:
+    assert Talk().understand("y" * 4000, questions.SMOKE, 5.0).reply is None
+    assert Talk().understand("yes " * 200, questions.SMOKE, 5.0).reply is None
