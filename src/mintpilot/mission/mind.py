@@ -14,6 +14,7 @@ from mintpilot.core.query import Answer, Combine, Query, Reply
 from mintpilot.core.semantic_map import SemanticMap
 from mintpilot.core.task import Task
 from mintpilot.mapping.knowledge import apply_knowledge
+from mintpilot.mission.surplus import with_surplus
 from mintpilot.reasoning.belief import condition, extend
 from mintpilot.uncertainty.findings import Findings, find_gaps, frame_problem
 
@@ -150,7 +151,7 @@ def learn(mind: Mind, query: Query, answer: Answer, settings: AskingSettings) ->
     update = condition(mind.belief, query, answer.reply, settings.answer_error)
     if update.contradiction:
         return Lesson(mind=replace(mind, withdrawn=mind.withdrawn | _asked_before(mind, query)), contradiction=True)
-    belief, surplus_refused = _learn_surplus(mind.belief, update.belief, query, answer, settings)
+    belief, surplus_refused = with_surplus(mind.belief, update.belief, query, answer, settings)
     return Lesson(
         mind=replace(
             mind,
@@ -160,36 +161,6 @@ def learn(mind: Mind, query: Query, answer: Answer, settings: AskingSettings) ->
         ),
         surplus_refused=surplus_refused,
     )
-
-
-def _learn_surplus(
-    before: Belief, after: Belief, query: Query, answer: Answer, settings: AskingSettings
-) -> tuple[Belief, bool]:
-    """The belief with what an answer says beyond the question, and whether that was refused as a contradiction.
-
-    Words that settle the question by themselves (``the blue one``) are one piece of evidence, not two: only they count
-    then, since an answer may be wrong as a whole.
-    """
-    known = {gap.id for gap in before.gaps}
-    also = [(cut, yes) for cut, yes in answer.also if set(cut.gap_ids) <= known]
-    belief = after
-    for cut, yes in also:
-        whole = len(also) == 1 and _settles(cut, yes, query, answer, before)
-        update = condition(before if whole else belief, cut, Reply.YES if yes else Reply.NO, settings.answer_error)
-        if update.contradiction:
-            return after, True
-        belief = update.belief
-    return belief, False
-
-
-def _settles(cut: Query, yes: bool, query: Query, answer: Answer, belief: Belief) -> bool:
-    """Whether that answer to the one cut leaves no other answer to the query; both about one and the same gap."""
-    if len(cut.gap_ids) != 1 or cut.gap_ids != query.gap_ids:
-        return False
-    (name,) = cut.gap_ids
-    (gap,) = (g for g in belief.gaps if g.id == name)
-    left = [v for v in gap.values if cut.holds({name: v}) == yes]
-    return bool(left) and all(query.holds({name: v}) == (answer.reply is Reply.YES) for v in left)
 
 
 def _look_for_gaps(mind: Mind, parts: Thinking, start_m: Vec3, honour_wishes: bool) -> tuple[Findings, Belief]:
