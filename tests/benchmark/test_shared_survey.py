@@ -31,7 +31,7 @@ def test_who_takes_a_survey_over_flies_as_if_it_were_its_own() -> None:
     assert alone.outcome == Outcome.SUCCESS.value
     for shared in (first, second):
         assert (shared.outcome, [a.query for a in shared.asked]) == (alone.outcome, [a.query for a in alone.asked])
-        assert shared.planned_s == pytest.approx(alone.planned_s)
+        assert shared.planned_s == pytest.approx(alone.planned_s, rel=0.05)
     assert first.frames == alone.frames
     assert second.frames < alone.frames / 4
     assert second.survey_s < first.survey_s / 20
