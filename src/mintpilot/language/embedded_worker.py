@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import os
+import secrets
 import sys
 from typing import IO, Any
 
@@ -46,6 +47,8 @@ def _load(path: str) -> Any:
     parameters.cpuparams.n_threads = 1
     parameters.cpuparams_batch.n_threads = 1
     parameters.warmup = False
+    # The library listens on a local port besides; nobody else may use it.
+    parameters.api_keys = [secrets.token_urlsafe(32)]
     return xllamacpp.Server(parameters)
 
 

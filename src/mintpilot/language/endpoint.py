@@ -19,7 +19,7 @@ from urllib.parse import urlsplit
 
 from pydantic import BaseModel
 
-from mintpilot.core.errors import DeviceError, InputError, MintPilotError, MissingPartError
+from mintpilot.core.errors import DeviceError, InputError, MintPilotError, MissingPartError, UnknownNameError
 from mintpilot.core.ports import Completion, LanguageModel
 from mintpilot.language.deadline import within
 
@@ -27,6 +27,8 @@ URL_VARIABLE = "MINTPILOT_LLM_URL"
 MODEL_VARIABLE = "MINTPILOT_LLM_MODEL"
 KEY_VARIABLES = ("MINTPILOT_LLM_KEY", "OPENAI_API_KEY")
 """Where the key is looked for; nowhere else."""
+OUTPUT_VARIABLE = "MINTPILOT_LLM_OUTPUT"
+"""``native`` or ``prompted``; see `OutputMode`."""
 _PARTS = ("pydantic_ai", "openai", "httpx2")
 
 
@@ -45,7 +47,8 @@ class EndpointModel(LanguageModel):
     Args:
         url: base address up to and with ``/v1``; default: the environment's ``MINTPILOT_LLM_URL``.
         model: the server's name for the model; default: the environment's ``MINTPILOT_LLM_MODEL``.
-        mode: how JSON is asked for.
+        mode: how JSON is asked for; default: the environment's ``MINTPILOT_LLM_OUTPUT``, else native. A server that
+            refuses the native way is asked the other way from the next call on.
         environment: where address, name and key come from; the key is read for each call and kept nowhere.
 
     Raises:
@@ -58,13 +61,13 @@ class EndpointModel(LanguageModel):
         url: str = "",
         model: str = "",
         *,
-        mode: OutputMode = OutputMode.PROMPTED,
+        mode: OutputMode | None = None,
         environment: Mapping[str, str] = os.environ,
     ) -> None:
         self._environment = environment
         self._url = (url or environment.get(URL_VARIABLE, "")).rstrip("/")
         self._model = model or environment.get(MODEL_VARIABLE, "")
-        self._mode = mode
+        self._mode = mode or _mode_in(environment)
         parts = urlsplit(self._url)
         if parts.scheme not in ("http", "https") or not parts.hostname or parts.username or parts.password:
             raise InputError(
@@ -85,7 +88,7 @@ class EndpointModel(LanguageModel):
         started_s = time.monotonic()
         form = schema if schema is not None and issubclass(schema, BaseModel) else None
         if form is not None and self._mode is OutputMode.PROMPTED:
-            prompt = f"{prompt}\n\nAnswer with JSON of this schema only: {json.dumps(form.model_json_schema())}"
+            prompt = f"{prompt}\n\nAnswer with JSON of this schema only: {json.dumps(_bare(form.model_json_schema()))}"
             form = None
         key = next((self._environment[name] for name in KEY_VARIABLES if self._environment.get(name)), "")
         call = self._client.Call(url=self._url, model=self._model, key=key, prompt=prompt, form=form)
@@ -99,6 +102,8 @@ class EndpointModel(LanguageModel):
             except MintPilotError:
                 raise
             except Exception as error:  # whatever the client raises: its words may hold what was sent, so only the type
+                if call.form is not None and self._client.is_refused(error):
+                    self._mode = OutputMode.PROMPTED
                 raise self._client.told(error, self._model, URL_VARIABLE) from None
             return answer
 
@@ -109,3 +114,17 @@ class EndpointModel(LanguageModel):
 
 _GRACE_S = 0.1
 """For closing the connection after the deadline."""
+
+
+def _mode_in(environment: Mapping[str, str]) -> OutputMode:
+    name = environment.get(OUTPUT_VARIABLE) or OutputMode.NATIVE
+    if name not in list(OutputMode):
+        raise UnknownNameError(OUTPUT_VARIABLE, name, list(OutputMode))
+    return OutputMode(name)
+
+
+def _bare(schema: object) -> object:
+    """The schema without titles and descriptions, which small models repeat instead of answering."""
+    if isinstance(schema, dict):
+        return {k: _bare(v) for k, v in schema.items() if k not in ("title", "description", "additionalProperties")}
+    return [_bare(v) for v in schema] if isinstance(schema, list) else schema

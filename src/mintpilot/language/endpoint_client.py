@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import AsyncIterator
+import json
 from dataclasses import dataclass
 
 import httpx2
@@ -23,7 +23,9 @@ from mintpilot.core.errors import DeviceError
 MOST_BYTES = 1_000_000
 _MOST_TOKENS = 400
 _KEPT_HEADERS = ("host", "content-type", "content-length", "accept", "connection", "user-agent")
+_JSON = {"content-type": "application/json"}
 _NO_KEY = "none"
+_REFUSALS = (400, 404, 415, 422, 501)
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)
@@ -57,27 +59,33 @@ class _Bounded(httpx2.AsyncBaseTransport):
         own = [("Authorization", f"Bearer {self._key}")] if self._key else []
         request.headers = httpx2.Headers([*kept, *own, ("accept-encoding", "identity")])
         response = await self._inner.handle_async_request(request)
-        response.stream = _BoundedStream(response.stream)
-        return response
+        body = bytearray()
+        async for chunk in response.aiter_raw():
+            body += chunk
+            if len(body) > MOST_BYTES:
+                raise _TooLongError
+        await response.aclose()
+        return httpx2.Response(response.status_code, headers=_JSON, content=_completed(bytes(body)))
 
     async def aclose(self) -> None:
         await self._inner.aclose()
 
 
-class _BoundedStream(httpx2.AsyncByteStream):
-    def __init__(self, inner: object) -> None:
-        self._inner = inner
-
-    async def __aiter__(self) -> AsyncIterator[bytes]:
-        total = 0
-        async for chunk in self._inner:  # type: ignore[attr-defined]
-            total += len(chunk)
-            if total > MOST_BYTES:
-                raise _TooLongError
-            yield chunk
-
-    async def aclose(self) -> None:
-        await self._inner.aclose()  # type: ignore[attr-defined]
+def _completed(body: bytes) -> bytes:
+    """The answer with the fields that the client insists on and that lean servers leave out."""
+    try:
+        reply = json.loads(body)
+        for index, choice in enumerate(reply["choices"]):
+            choice.setdefault("index", index)
+            choice.setdefault("finish_reason", "stop")
+            choice["message"].setdefault("role", "assistant")
+        usage = reply.get("usage")
+        if isinstance(usage, dict):
+            for name in ("prompt_tokens", "completion_tokens", "total_tokens"):
+                usage.setdefault(name, 0)
+    except (ValueError, TypeError, KeyError, AttributeError, RecursionError):
+        return body
+    return json.dumps({"id": "", "object": "chat.completion", "created": 0, "model": "", **reply}).encode()
 
 
 async def ask(call: Call) -> tuple[str, int]:
@@ -115,12 +123,17 @@ def told(error: Exception, model: str, address: str) -> DeviceError:
         return DeviceError(
             f"language model server answered {status}: check key, address and the model's name '{model}'"
         )
-    if isinstance(error, UnexpectedModelBehavior):
+    if isinstance(error, UnexpectedModelBehavior) or isinstance(error.__cause__, ValueError):
         return DeviceError(f"language model '{model}' sent no chat completion: check that {address} ends in /v1")
     if isinstance(error, ModelAPIError | httpx2.HTTPError | OSError):
         reason = type(error.__cause__ or error).__name__
         return DeviceError(f"language model server cannot be reached ({reason}): check {address}")
     return DeviceError(f"language model '{model}' sent no chat completion ({type(error).__name__}): check {address}")
+
+
+def is_refused(error: Exception) -> bool:
+    """Whether the server did not like what it was asked, as it does that knows no ``response_format``."""
+    return isinstance(error, ModelHTTPError) and error.status_code in _REFUSALS
 
 
 def _parameters(form: type[BaseModel] | None) -> ModelRequestParameters:

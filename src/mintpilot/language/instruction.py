@@ -16,6 +16,7 @@ from mintpilot.core.task import Action, Avoidance, Reference, SubGoal, Task
 from mintpilot.language import lexicon, patterns
 from mintpilot.language.clauses import Reading, read_clause
 from mintpilot.language.phrases import parse_phrase
+from mintpilot.language.rewriting import rewritten
 
 _LONGEST = 600
 _DOING = {Action.GO: "go to", Action.PICK: "pick up at", Action.DELIVER: "deliver to", Action.LOOK: "look into"}
@@ -42,7 +43,7 @@ def parse_instruction(text: str, capabilities: Capabilities | None = None, *, ho
             message says which part, why, and what was understood of the rest.
     """
     words = _normal(text)
-    words, avoid = _avoidances(words)
+    words, avoid = _avoidances(rewritten(words))
     reading, seeks = Reading(home_m=home_m), False
     for clause in _clauses(words):
         if _seeks_people(clause, reading):

@@ -62,6 +62,9 @@ ROOMS = _words("room rooms chamber chambers office offices")
 
 PRONOUNS = _words("it them this that him her there")
 
+PERSONAL = _words("him her")
+"""Of these, the ones that mean a person."""
+
 DETERMINERS = _words("the a an this that these those my our his her their some any two three four five six")
 
 EVERY = _words("every each all both")
@@ -88,6 +91,13 @@ AVOIDED: dict[str, RegionKind] = {
 
 NEVER_TOUCHED = _words("fire flames walls wall racks rack shelves obstacles people everything collisions anything")
 """What no plan flies into anyway, so that asking for it changes nothing."""
+
+FUNCTION_WORDS = _words(
+    "for of as that which where who whom whose is are be was were been am me you we i us yourself myself but so "
+    "because than while without to from into and or not if needs need wants contains holds has have via past through they he "
+    "she it when whether brought taken"
+)
+"""Words that no name of a thing is made of: where one is left over, the phrase was not understood."""
 
 CANNOT = {
     "land": "landing on request",

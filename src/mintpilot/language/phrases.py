@@ -71,6 +71,8 @@ def _describe(words: str, before: Reference | None) -> Reference:
     if not tokens or tokens[-1] in lexicon.ADJECTIVES or not tokens[-1][0].isalpha():
         raise InputError(f"'{words}' names no thing: add a noun, as in 'the red box'")
     *adjectives, noun = tokens
+    if lexicon.FUNCTION_WORDS & set(tokens) or any("," in word for word in tokens):
+        raise InputError(f"'{words}' is not understood as one thing: name it by what it looks like and where it is")
     said = tuple(_attribute(word) for word in adjectives)
     if noun in ("one", "ones") and before is not None:
         return Reference(phrase=words, label=before.label, attributes=(*said, *after), every=every)
