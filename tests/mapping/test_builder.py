@@ -219,6 +219,25 @@ def test_nobody_flies_through_flames() -> None:
     assert state_at(made.snapshot(), (4.3, 3.3, 0.5), (4.8, 3.3, 0.5), (5.6, 3.3, 0.9)) == [2, 2, 1]
 
 
+def test_the_foot_of_flames_is_nobody_but_somebody_beside_them_is() -> None:
+    made = builder()
+    frame = see(ROOM, [], pose((1.0, 3.0, 1.5), 0.0))
+    lying = {
+        "in the flames": Box(lo_m=(3.9, 2.9, 0.0), hi_m=(4.9, 3.5, 0.4)),
+        "beside": Box(lo_m=(4.7, 4.0, 0.0), hi_m=(5.7, 4.6, 0.3)),
+    }
+    for index in range(2):
+        people = [Detection(label="person", score=0.9, box_m=box, frame_index=index) for box in lying.values()]
+        made.integrate(frame, people)
+    before = made.snapshot()
+    assert len([o for o in before.objects if o.label == "person"]) == 2
+    flames = Box(lo_m=(4, 3, 0.2), hi_m=(4.6, 3.6, 1.0))
+    for index in (2, 3):
+        made.integrate(frame, (Detection(label="fire", score=0.9, box_m=flames, frame_index=index),))
+    people_left = [o.box_m for o in made.snapshot(before).objects if o.label == "person"]
+    assert people_left == [lying["beside"]]
+
+
 def test_flames_in_smoke_stay_solid() -> None:
     cloud = Box(lo_m=(3.0, 2.0, 0.0), hi_m=(5.0, 4.0, 3.0))
     flames = Box(lo_m=(2.8, 2.8, 0.2), hi_m=(3.2, 3.2, 1.0))

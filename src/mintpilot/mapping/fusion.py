@@ -44,7 +44,8 @@ def fused_objects(tracks: Sequence[Track], draft: Draft) -> tuple[MapObject, ...
         if t.label != "door" and (len(t.frames) >= 2 or t.score >= settings.sure_score) and not _roofed(t, draft)
     ]
     people = [t for t in kept if t.label == "person"]
-    kept = [t for t in kept if not any(_limb_of(t, person) for person in people)]
+    fires = [t for t in kept if t.label == "fire"]
+    kept = [t for t in kept if not any(_limb_of(t, p) for p in people) and not any(_foot_of(t, f) for f in fires)]
     old = draft.previous.objects if draft.previous is not None else ()
     pairs = match([[closeness(t.box_m, o.box_m) if t.label == o.label else 0.0 for o in old] for t in kept])
     for thing in old:
@@ -143,6 +144,14 @@ def _limb_of(track: Track, person: Track) -> bool:
         return False
     a, b = track.box_m.centre_m, person.box_m.centre_m
     return float(np.hypot(a[0] - b[0], a[1] - b[1])) < 1.1
+
+
+def _foot_of(track: Track, fire: Track) -> bool:
+    """True for what was taken for somebody lying in the midst of flames: it is their own foot, of several colours."""
+    if track.label != "person":
+        return False
+    (x, y, _), flames = track.box_m.centre_m, fire.box_m
+    return flames.lo_m[0] <= x <= flames.hi_m[0] and flames.lo_m[1] <= y <= flames.hi_m[1]
 
 
 def _roofed(track: Track, draft: Draft) -> bool:
