@@ -72,6 +72,12 @@ def test_a_closed_model_is_not_started_again() -> None:
     assert (model.calls, model.closed) == (0, 1)
 
 
+def test_a_model_that_cannot_be_closed_does_not_end_the_mission_badly() -> None:
+    model = Sulking()
+    model.close = lambda: 1 / 0  # type: ignore[method-assign]
+    assert run_mission(hall(), vehicle="kinematic", llm=model).outcome is Outcome.SUCCESS
+
+
 class Odd:
     """Something that is no completion."""
 

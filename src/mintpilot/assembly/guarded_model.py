@@ -5,6 +5,7 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Callable
+from contextlib import suppress
 
 from mintpilot.core.errors import DeviceError, MintPilotError
 from mintpilot.core.ports import Completion, LanguageModel
@@ -15,6 +16,7 @@ MOST_FAILURES = 3
 REST_S = 20.0
 SLACK_S = 0.3
 """A model's own time-out comes first; this much later it is no longer waited for."""
+CLOSING_S = 5.0
 _LONGEST = 20_000
 """Characters of an answer; what comes after them is thrown away."""
 
@@ -77,11 +79,12 @@ class GuardedModel(LanguageModel):
         return remarks
 
     def close(self) -> None:
-        """Closes the model, where it can be closed; from now on every call fails. What is then told is not kept."""
+        """Closes the model, where it can be closed; from now on every call fails. Waits `CLOSING_S` at most."""
         self._closed = True
         close = getattr(self._model, "close", None)
         if callable(close):
-            close()
+            with suppress(DeviceError):  # the mission is over: there is nobody left to be told
+                within(close, CLOSING_S, f"language model '{self._name}'")
 
     def _fail(self, why: str) -> None:
         with self._lock:
