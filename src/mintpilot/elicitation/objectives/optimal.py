@@ -114,7 +114,10 @@ class _Programme:
         if not len(yes):
             return {}, 0.0, True
         # A cut and its opposite are one: the yes part is the one that holds the first hypothesis.
-        yes = np.unique(np.where(yes[:, np.argmax(support)][:, None], yes, support & ~yes), axis=0)
+        yes = np.where(yes[:, np.argmax(support)][:, None], yes, support & ~yes)
+        row_of = {packed.tobytes(): row for row, packed in enumerate(np.packbits(yes, axis=1))}
+        keys = sorted(row_of)
+        yes = yes[[row_of[key] for key in keys]]
         no = support & ~yes
         share = yes @ self.mass / self.mass[support].sum()
         below_yes, below_no = self.bounds(yes), self.bounds(no)
@@ -131,7 +134,6 @@ class _Programme:
         found = float(least.min())
         # What was not followed to its end is no better than the best, but must not look as good.
         least = np.where(exact, least, np.maximum(least, best) + _BEHIND)
-        keys = [np.packbits(row).tobytes() for row in yes]
         return dict(zip(keys, least.tolist(), strict=True)), best if exact.any() else found, bool(exact.any())
 
     def bounds(self, supports: Bools) -> Floats:
