@@ -29,6 +29,7 @@ MEDICINE = demo_path("medicine")
 @pytest.fixture
 def server(monkeypatch: pytest.MonkeyPatch) -> Iterator[LlmServer]:
     """A server that knows other words. Nobody loses patience with it here, however busy this machine is."""
+    pytest.importorskip("pydantic_ai")
     monkeypatch.setattr("mintpilot.interaction.hearing.SPEAKING_S", 60.0)
     monkeypatch.setattr("mintpilot.assembly.talk.SCREEN_S", 60.0)
     running = LlmServer(lambda prompt: friendly(prompt) or f"{{}} {KEY}")
@@ -105,6 +106,7 @@ def test_a_server_that_goes_away_in_mid_mission_is_told_once_and_the_mission_goe
 
 
 def test_a_server_that_was_never_there_costs_words_only(monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("pydantic_ai")
     monkeypatch.setenv("MINTPILOT_LLM_URL", "http://127.0.0.1:9/v1")
     monkeypatch.setenv("MINTPILOT_LLM_MODEL", "tiny")
     record = run_mission(MEDICINE, vehicle="kinematic", llm="endpoint")

@@ -107,6 +107,7 @@ def test_a_function_and_a_recording_are_language_models():
 
 
 def test_a_server_is_a_language_model(monkeypatch):
+    pytest.importorskip("pydantic_ai")
     server = LlmServer(lambda prompt: "yes")
     monkeypatch.setenv("MINTPILOT_LLM_URL", server.url)
     monkeypatch.setenv("MINTPILOT_LLM_MODEL", "tiny")

@@ -116,7 +116,7 @@ def _language_model() -> Finding:
     """Which models can be chosen besides ``template``; no key is looked at."""
     ready = []
     server = urlsplit(os.environ.get("MINTPILOT_LLM_URL", "")).hostname
-    if server and os.environ.get("MINTPILOT_LLM_MODEL"):
+    if server and os.environ.get("MINTPILOT_LLM_MODEL") and find_spec("pydantic_ai"):
         ready.append(f"endpoint ({os.environ['MINTPILOT_LLM_MODEL']} at {server})")
     if find_spec("xllamacpp") and (own := os.environ.get(PATH_VARIABLE) or _guess(_parted)):
         ready.append(f"embedded ({Path(own).name})")
