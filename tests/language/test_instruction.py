@@ -6,32 +6,17 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from mintpilot.benchmark.language_cases import written
 from mintpilot.core.errors import InputError
-from mintpilot.core.task import Action, SubGoal, Task
+from mintpilot.core.task import Action
 from mintpilot.language import Capabilities, parse_instruction
 
-from .instructions import CLOTHED, MORE, PARAPHRASES, PLAIN, REFUSED
+from .instructions import CASES, PARAPHRASES, PLAIN, REFUSED
 
 HOME_M = (0.0, 0.0, 1.0)
 
 
-def written(task: Task) -> tuple[str, ...]:
-    steps = [_step(subgoal) for subgoal in task.subgoals]
-    avoided = [f"{'avoid' if a.strict else 'spare'} {a.kind}" for a in task.avoid]
-    return (*steps, *(["people"] if task.seeks_people else []), *avoided)
-
-
-def _step(subgoal: SubGoal) -> str:
-    reference = subgoal.reference
-    words = [str(subgoal.action), reference.label, *(f"{a.name or '?'}={a.value}" for a in reference.attributes)]
-    if reference.position_m is not None:
-        words.append("@" + ",".join(f"{x:g}" for x in reference.position_m))
-    if subgoal.dwell_s != SubGoal(action=Action.GO, reference=reference).dwell_s:
-        words.append(f"dwell={subgoal.dwell_s:g}")
-    return " ".join(word for word in [*words, "*" if reference.every else ""] if word)
-
-
-@pytest.mark.parametrize(("text", "expected"), [*PLAIN.items(), *PARAPHRASES.items(), *MORE.items(), *CLOTHED.items()])
+@pytest.mark.parametrize(("text", "expected"), [case for group in CASES.values() for case in group.items()])
 def test_instructions_are_understood(text: str, expected: tuple[str, ...]) -> None:
     home_m = HOME_M if {"back", "home"} & set(text.lower().split()) else None
     task = parse_instruction(text, home_m=home_m)

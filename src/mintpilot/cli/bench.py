@@ -180,6 +180,36 @@ def report(
     return guarded(work, as_json=False, debug=debug)
 
 
+@bench.command
+def language(
+    *,
+    llm: Annotated[list[str], Parameter(name="--llm", negative="")] = [],  # noqa: B006
+    instructions: Path | None = None,
+    sample: int = 60,
+    out: Path | None = None,
+    json: Json = False,
+    debug: Flag = False,
+) -> ExitCode:
+    """Instructions, answers and questions: by rules alone, and what a language model adds.
+
+    Args:
+        llm: Model to measure beside the rules: embedded, endpoint, or one of a plug-in; may be given several times.
+            Default: those that are there.
+        instructions: Ambiguous instructions with their possible objects, in the form of IntroPlan's file.
+        sample: So many answers and ambiguous instructions are given to each model.
+        out: Folder for language.json. Default: nothing is kept.
+        json: Print one JSON object, and nothing else, on standard output.
+        debug: Show the traceback of an error.
+    """
+
+    def work() -> ExitCode:
+        from mintpilot.cli.bench_language import bench_language
+
+        return bench_language(llm, instructions=instructions, sample=sample, out=out, as_json=json)
+
+    return guarded(work, as_json=json, debug=debug)
+
+
 def _run(
     work: Callable[[BenchOptions], ExitCode],
     jobs: int,

@@ -93,9 +93,9 @@ NEVER_TOUCHED = _words("fire flames walls wall racks rack shelves obstacles peop
 """What no plan flies into anyway, so that asking for it changes nothing."""
 
 FUNCTION_WORDS = _words(
-    "for of as that which where who whom whose is are be was were been am me you we i us yourself myself but so "
-    "because than while without to from into and or not if needs need wants contains holds has have via past through they he "
-    "she it when whether brought taken"
+    "for of as that which where who whom whose is are be was were been am me you we i us yourself myself but "
+    "so because than while without to from into and or not if needs need wants contains holds has have via "
+    "past through they he she it when whether brought taken "
 )
 """Words that no name of a thing is made of: where one is left over, the phrase was not understood."""
 

@@ -1,0 +1,178 @@
+"""What a language model adds to the rules: instructions, answers, wordings, time."""
+
+from __future__ import annotations
+
+import random
+import time
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from statistics import mean, quantiles
+
+from mintpilot.benchmark.language_cases import AnswerCase, asked, box, instruction_cases, written
+from mintpilot.core.errors import InputError
+from mintpilot.core.gap import ABSENT, BLOCKED, PASSABLE, PRESENT, GapKind, KnowledgeGap
+from mintpilot.core.ports import Completion, LanguageModel
+from mintpilot.core.query import Question, Saying, SayingKind
+from mintpilot.elicitation.wording import word_question
+from mintpilot.language.answers import Reading
+from mintpilot.language.reading import parse_with_model, understand_with_model
+from mintpilot.language.wording import ModelWording
+
+PATIENT_S = 60.0
+"""Quality is measured without hurry; speed apart from it, seconds."""
+_HOME_M = (0.0, 0.0, 1.0)
+_AGAIN = {Reading.UNSURE, Reading.OTHER}
+"""Either way it is asked again."""
+
+
+class Counting(LanguageModel):
+    """Notes how often a model was asked, how long it took and what it wrote."""
+
+    def __init__(self, model: LanguageModel) -> None:
+        self._model = model
+        self.seconds: list[float] = []
+        self.tokens = 0
+
+    def complete(self, prompt: str, *, schema: type | None, timeout_s: float) -> Completion:
+        """The model's own completion, counted."""
+        started_s = time.perf_counter()
+        completion = self._model.complete(prompt, schema=schema, timeout_s=timeout_s)
+        self.seconds.append(time.perf_counter() - started_s)
+        self.tokens += completion.tokens
+        return completion
+
+    def speed(self) -> Speed:
+        """The figures so far."""
+        cuts = quantiles(self.seconds, n=20) if len(self.seconds) > 1 else self.seconds * 19
+        return Speed(
+            calls=len(self.seconds), p50_s=cuts[9] if cuts else None, p95_s=cuts[18] if cuts else None,
+            tokens=self.tokens,
+        )  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Speed:
+    """How long a model took."""
+
+    calls: int
+    p50_s: float | None
+    p95_s: float | None
+    tokens: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Parsed:
+    """Instructions read as expected, as something else, or refused (the rest)."""
+
+    n: int
+    as_expected: int
+    as_something_else: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Answered:
+    """Answers understood; a Yes that was not said; a Yes taken for a No."""
+
+    n: int
+    understood: int
+    false_yes: int
+    no_for_yes: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Worded:
+    """Wordings proposed by a model, and those that the check let through."""
+
+    n: int
+    accepted: int
+    changed: int
+    """Accepted ones that are not just the template's words."""
+    template_words: float
+    model_words: float | None
+    speed: Speed
+
+
+def parse_all(model: LanguageModel) -> Parsed:
+    """All written-down instructions."""
+    cases = [case for group in instruction_cases().values() for case in group.items()]
+    right = wrong = 0
+    for text, expected in cases:
+        try:
+            task = parse_with_model(text, model, home_m=_HOME_M, timeout_s=PATIENT_S)
+        except InputError:
+            continue
+        right += written(task) == expected
+        wrong += written(task) != expected
+    return Parsed(n=len(cases), as_expected=right, as_something_else=wrong)
+
+
+def answer_all(cases: Sequence[AnswerCase], model: LanguageModel) -> Answered:
+    """Answers read. Where a person was unsure or spoke of something else, both lead to asking again and count."""
+    right = false_yes = flipped = 0
+    for case in cases:
+        got = understand_with_model(case.text, case.question, model, timeout_s=PATIENT_S).reading
+        right += got == case.reading or (got in _AGAIN and case.reading in _AGAIN)
+        false_yes += got is Reading.YES and case.reading != Reading.YES
+        flipped += got is Reading.NO and case.reading == Reading.YES
+    return Answered(n=len(cases), understood=right, false_yes=false_yes, no_for_yes=flipped)
+
+
+def sampled(cases: Sequence[AnswerCase], most: int) -> list[AnswerCase]:
+    """A seeded sample, in order; all where there are no more."""
+    kept = set(random.Random(0).sample(range(len(cases)), min(most, len(cases))))
+    return [case for index, case in enumerate(cases) if index in kept]
+
+
+def word_all(model: LanguageModel) -> Worded:
+    """Questions as missions ask them, worded by the model."""
+    counting = Counting(model)
+    wording = ModelWording(template=word_question, model=counting, timeout_s=PATIENT_S)
+    questions = list(_questions())
+    for question in questions:
+        wording.improve(question)
+    used = [trial for trial in wording.trials if not trial.doubt]
+    return Worded(
+        n=len(questions),
+        accepted=len(used),
+        changed=sum(trial.proposed != trial.template for trial in used),
+        template_words=mean(len(q.text.split()) for q in questions),
+        model_words=mean(len(t.proposed.split()) for t in used) if used else None,
+        speed=counting.speed(),
+    )
+
+
+def _questions() -> Iterator[Question]:
+    clouds = (
+        "the grey smoke near the gate",
+        "the dark smoke next to the blue rack",
+        "the smoke",
+        "the thin smoke by the fire",
+    )
+    rooms = "the closed room", "the closed room with the brown door", "the room in the far corner"
+    for number, called in enumerate(clouds):
+        yield _about(f"obstacle:{number}", GapKind.OBSTACLE, called, (PASSABLE, BLOCKED))
+    for number, called in enumerate(rooms):
+        yield _about(f"presence:{number}", GapKind.PRESENCE, called, (PRESENT, ABSENT))
+    looks = (("small", "red"), ("large", "blue"), ("small", "green"), ("large", "white"))
+    boxes = tuple(box(f"box-{i}", size, colour) for i, (size, colour) in enumerate(looks))
+    gap = KnowledgeGap(
+        id="target:1:box", kind=GapKind.TARGET, subject="the box", description="the box", candidates=boxes,
+        values=tuple(c.id for c in boxes), prior=(0.25,) * 4, position_m=(0.0, 0.0, 0.0),
+    )  # fmt: skip
+    for i, (_, colour) in enumerate(looks):
+        yield _worded(gap, {f"box-{i}"}, Saying(kind=SayingKind.VALUE, value=f"box-{i}"))
+        yield _worded(gap, {f"box-{i}"}, Saying(kind=SayingKind.ATTRIBUTE, name="colour", value=colour))
+    for size, ids in (("small", {"box-0", "box-2"}), ("large", {"box-1", "box-3"})):
+        yield _worded(gap, ids, Saying(kind=SayingKind.ATTRIBUTE, name="size", value=size))
+
+
+def _about(name: str, kind: GapKind, called: str, values: tuple[str, str]) -> Question:
+    gap = KnowledgeGap(
+        id=name, kind=kind, subject=name, description=called, values=values, prior=(0.5, 0.5),
+        position_m=(0.0, 0.0, 0.0),
+    )  # fmt: skip
+    return _worded(gap, {values[0]}, Saying(kind=SayingKind.VALUE, value=values[0]))
+
+
+def _worded(gap: KnowledgeGap, values: set[str], saying: Saying) -> Question:
+    return word_question(asked(gap, values, saying, "?", yes="", no="").query, (gap,), None)
