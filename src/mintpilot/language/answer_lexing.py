@@ -32,7 +32,7 @@ _FOREIGN = frozenset((Kind.DANGER, Kind.HAZARD, Kind.BENIGN, Kind.PERSON, Kind.O
 _OPEN = (
     (r"\b(is|are|was|were|do|does|did|have|has|would|could|should)(?:n'|'n|'nt|nt')(?: ?t)?\b", r"\1 not"),
     (r"^(?:yeah|yes|ok|okay|right|well|oh|and) so (?!far\b)|^so (?:yeah|yes) (?=\w+ \w)", ""),
-    (r"(?<!is)(?<!are)(?<!be)(?<!yeah)(?<!yes)(?<!oh)(?<!looks)(?<!seems)(?<!it)(?<!all)(?<!the)(?<!on)(?<!to)"
+    (r"(?<!is)(?<!re)(?<!be)(?<!yeah)(?<!yes)(?<!oh)(?<!looks)(?<!seems)(?<!it)(?<!all)(?<!the)(?<!on)(?<!to)"
      r"(?<=\w) (?:ok|okay|right)$", ""),
     (r"\bcan ?n[o']t\b|\bcant\b|\bcannot\b|\bcan't\b", "can not"), (r"\bwon'?t\b", "will not"),
     (r"\bshan'?t\b", "shall not"), (r"\bain'?t\b", "is not"), (r"\b(\w+)n't\b", r"\1 not"),
@@ -63,7 +63,19 @@ _SIGNS = {"\N{THUMBS UP SIGN}": " yes ", "\N{THUMBS DOWN SIGN}": " no ", "\N{CRO
 _AT_END = {"in": Kind.INSIDE, "what": Kind.UNSURE, "sorry": Kind.UNSURE, "right": Kind.YES, "again": Kind.UNSURE,
            "go": Kind.AGREE, "pass": Kind.UNSURE, "no": Kind.NO}  # fmt: skip
 """Words that say something only where nothing follows; all but ``in`` only where nothing goes before either."""
-_ENDING = frozenset((("it", "is"), ("it", "does"), ("i", "do"), ("that", "is"), ("it", "should")))
+_ENDING = frozenset(
+    (
+        ("it", "is"),
+        ("it", "does"),
+        ("i", "do"),
+        ("you", "can"),
+        ("you", "may"),
+        ("you", "should"),
+        ("please", "do"),
+        ("that", "is"),
+        ("it", "should"),
+    )
+)
 _JUDGING = frozenset((("good",), ("fine",)))
 """Consent only where they are the whole of what is said: not in ``good morning``."""
 _AFTER_JUDGING = frozenset(["to", "go", "by", "with", "then", "now", "thanks", "so", "for"])

@@ -57,7 +57,7 @@ ATTITUDES: dict[Kind, str] = {
         let us go|let us do it|let us do that|let us go for it|move ahead|push ahead|press on|push on|onward|onwards|
         please go|just go|now go|go now|it is a go|that is a go|give it the green light|feel free|do not hesitate|
         can do|approved|i approve|cleared hot|advance|forward|head on|move on|roll on|send it|you are good to go|
-        we are good to go
+        we are good to go|you can go|you may go|you should go
     """,
     Kind.MINIMISE: "just|only|merely|nothing but|nothing more than|simply|purely|mere",
     Kind.NOT: """
@@ -124,7 +124,8 @@ ATTITUDES: dict[Kind, str] = {
         say it again|say it once more|repeat|repeat that|please repeat|repeat the question|what was that|which one|
         did not catch that|once more|again please|one more time|excuse me|i beg your pardon|beg your pardon|speak up|
         louder|breaking up|you are breaking up|say what|sorry what|slow down|rephrase|in other words|i am lost|
-        no reception|bad line|still checking|ambiguous|not make it out
+        no reception|bad line|still checking|ambiguous|not make it out|leave it to you|leave that to you|
+        leave it up to you|you should decide
     """,
     Kind.RISK: """
         risk it|risk that|chance it|take a chance|take the risk|take that risk|take the chance|take your chances|

@@ -87,13 +87,14 @@ STATES: dict[Kind, str] = {
         victims|survivor|survivors|casualty|casualties|husband|wife|son|daughter|brother|sister|mother|father|mum|mom|
         dad|uncle|aunt|neighbour|neighbor|neighbours|employee|employees|resident|residents|tenant|tenants|occupant|
         occupants|soul|body|bodies|human|humans|visitor|visitors|others|grandmother|grandfather|grandma|grandpa|
-        teenager|toddler|bloke|watchman|night watchman
+        teenager|toddler|bloke|watchman|night watchman|team|squad
     """,
     Kind.ONE: "he|she|they|him|her|them",
     Kind.EVERYBODY: """
         everybody|everyone|they all|all of them|all of us|we all|all the people|every last one|every single one|
         every one|all the workers|all the staff|all the kids|all staff|all personnel|the whole team|the lot of them|
-        all people|them all|they are all|they have all|they were all|all the children|all hands|we are all
+        all people|them all|they are all|they have all|they were all|all the children|all hands|we are all|
+        the whole crew|the whole family|the whole staff|whole crew|whole team
     """,
     Kind.NOBODY: """
         nobody|no one|noone|not a soul|no soul|no living soul|not one person|not a single person|no person|no people|
@@ -105,9 +106,9 @@ STATES: dict[Kind, str] = {
         part|mostly
     """,
     Kind.INSIDE: """
-        inside|in there|in it|in here|in the room|in that room|in this room|there|indoors|at home|home|
-        behind the door|at work|in the back|in the corner|under the desk|on the floor|still in|remains|remain|
-        remained|went in|gone in|walked in|ran in|came in|stayed behind|left behind|stayed
+        inside|in there|in it|in here|in the room|in that room|in this room|there|indoors|behind the door|in the back|
+        in the corner|under the desk|on the floor|still in|remains|remain|remained|went in|gone in|walked in|ran in|
+        came in|stayed behind|left behind|stayed
     """,
     Kind.OUT: """
         out|outside|got out|get out|came out|come out|gets out|getting out|went out|made it out|make it out|made it|
@@ -142,7 +143,8 @@ STATES: dict[Kind, str] = {
     Kind.PERCEIVE: "saw|see|seen|heard|hear|spotted|noticed|notice|spot|hearing|seeing|i could hear|feel|felt|found",
     Kind.NUMBER: """
         one|two|three|four|five|six|seven|eight|nine|ten|1|2|3|4|5|6|7|8|9|10|a few|several|a couple|at least one|
-        loads|a couple of them|two of them|three of them|a dozen|plenty|lots
+        loads|a couple of them|two of them|three of them|a dozen|plenty|lots|one or two|two or three|three or four|
+        four or five|five or six
     """,
     Kind.EXIST: "there is|there are|there was|there were|we have|i have|there has been|there will be|still have",
 }

@@ -176,6 +176,8 @@ def _basis(reading: Reading, said: Said, question: Question) -> str:
     """What the reading rests on."""
     if _topic(question) is GapKind.OBSTACLE and Claim.PASSABLE in said.claims and not said.claims & {Claim.YES}:
         return "benign" if said.is_benign else "derived yes"
+    if reading is Reading.YES and said.claims == {Claim.BOOST}:
+        return "derived yes"
     if reading is Reading.YES:
         explained = said.breaks_after_plain or _topic(question) is not GapKind.OBSTACLE
         return "derived" if Claim.YES not in said.claims else "yes, explained" if explained else "yes"

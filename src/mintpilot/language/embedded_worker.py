@@ -43,9 +43,9 @@ def _load(path: str) -> Any:
     parameters.model.path = path
     parameters.n_ctx = _CONTEXT_TOKENS
     parameters.n_parallel = 1
-    # Two threads spin and stall beside a simulator on two cores.
+    # Two threads that write spin and stall beside a simulator on two cores; reading the prompt is short, and halved.
     parameters.cpuparams.n_threads = 1
-    parameters.cpuparams_batch.n_threads = 1
+    parameters.cpuparams_batch.n_threads = 2
     parameters.warmup = False
     # The library listens on a local port besides; nobody else may use it.
     parameters.api_keys = [secrets.token_urlsafe(32)]
