@@ -12,10 +12,10 @@ def _words(text: str) -> frozenset[str]:
 
 _CAUTION = _words(
     "not no never dont isnt cant wont without nobody none think maybe perhaps probably possibly guess guessing "
-    "suppose believe should could might would hope hopefully seems looks likely almost fairly pretty sure unsure "
-    "if unless until when but except only though what where which why how who are toxic unsafe danger dangerous "
-    "poison blocked says said just kidding forget opposite leave haha idea percent fire leaning something anyone try check wait stop "
-    "have does "
+    "suppose believe should could might would hope hopefully seems looks likely almost fairly pretty sure "
+    "unsure if unless until when but except only though what where which why how who are toxic unsafe danger "
+    "dangerous poison blocked says said just kidding forget opposite leave haha idea percent fire leaning "
+    "something anyone try check wait stop have does "
 )
 _SHORTEST_WHOLE = 3
 _SHORTEST_PART = 3
