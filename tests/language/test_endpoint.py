@@ -162,9 +162,9 @@ def test_whatever_goes_wrong_is_one_error_without_the_key(
     server: Server, respond: Callable[[BaseHTTPRequestHandler], None], message: str
 ) -> None:
     server.respond = respond
+    timeout_s = 0.3 if respond in (_hang, _drip) else 20
     with pytest.raises(DeviceError, match=message) as caught:
-        hangs = respond in (_hang, _drip)
-        model(server).complete("Hello?", schema=None, timeout_s=0.3 if hangs else 20)
+        model(server).complete("Hello?", schema=None, timeout_s=timeout_s)
     assert KEY not in str(caught.value)
     assert len(server.requests) == 1, "nothing is tried twice"
 
