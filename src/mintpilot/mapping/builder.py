@@ -8,10 +8,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from mintpilot.core.errors import MapError
-from mintpilot.core.geometry import Box, GridFrame
+from mintpilot.core.geometry import Bools, Box, GridFrame
 from mintpilot.core.observation import Detection, Frame, RegionKind
 from mintpilot.core.plan import VehicleLimits
-from mintpilot.core.semantic_map import Cell, SemanticMap
+from mintpilot.core.semantic_map import Cell, Knowledge, Region, SemanticMap
+from mintpilot.mapping.channels import hugging
 from mintpilot.mapping.fusion import Draft, fused_objects, fused_regions, fused_rooms
 from mintpilot.mapping.identity import Names
 from mintpilot.mapping.objects import Tracks
@@ -150,10 +151,30 @@ class MapBuilder:
             # Inside a cloud unknown voxels count as free: the region may be entered only after an explicit yes for
             # the whole of it, and mapping goes on in flight, so that a solid thing hidden in it is seen when near.
             if region.kind is RegionKind.SMOKE:
-                flat[region.cells] = np.where(flat[region.cells] == Cell.OCCUPIED, Cell.OCCUPIED, Cell.FREE)
+                here = flat[region.cells]
+                unsure = (here == Cell.UNKNOWN) & self._hugging(region, cells, known)
+                flat[region.cells] = np.where((here == Cell.OCCUPIED) | unsure, here, Cell.FREE)
         rooms = fused_rooms(self._tracks.all, draft, self._priors[1])
         self._last = SemanticMap(frame=self._frame, cells=cells, objects=objects, regions=regions, rooms=rooms)
         return self._last
+
+    def _hugging(self, cloud: Region, cells: NDArray[np.uint8], known: SemanticMap | None) -> Bools:
+        """Which of the cloud's cells (n,) are too near to something solid to be counted on.
+
+        Once the drone may fly in it, its way there stays as it was: what was free in the map before stays so.
+        """
+        mask = np.zeros(cells.shape, bool)
+        mask.reshape(-1)[cloud.cells] = True
+        near = hugging(
+            mask,
+            cells == Cell.OCCUPIED,
+            cells == Cell.FREE,
+            resolution_m=self._frame.resolution_m,
+            hull_m=self._limits.radius_m + self._limits.margin_m,
+        )
+        if known is not None and cloud.passable is Knowledge.YES:
+            near &= known.cells != Cell.FREE
+        return np.asarray(near.reshape(-1)[cloud.cells])
 
     def _blaze(self, flames: Box) -> Box:
         """Where flames may reach: they move, and only their brightest part is recognised."""

@@ -1,0 +1,60 @@
+"""The middle of a gap that smoke hides."""
+
+from __future__ import annotations
+
+import numpy as np
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from mintpilot.mapping.channels import hugging
+
+RES_M, HULL_M = 0.2, 0.4
+
+
+def hall(gap: tuple[int, int], hidden: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """A wall along y at x = 20 with a gap, and a cloud over it; ``hidden`` voxels of each end are in the cloud."""
+    shape = (3, 40, 40)
+    cloud, solid = np.zeros(shape, bool), np.zeros(shape, bool)
+    lo, hi = gap[0] - hidden, gap[1] + hidden
+    cloud[:, max(lo, 0) : hi, 14:27] = True
+    solid[:, : gap[0], 20] = solid[:, gap[1] :, 20] = True
+    return cloud, solid & ~cloud, ~solid & ~cloud
+
+
+def test_the_way_keeps_away_from_the_ends_of_a_wall() -> None:
+    cloud, solid, free = hall((14, 26), 5)
+    near = hugging(cloud, solid, free, resolution_m=RES_M, hull_m=HULL_M)
+    assert (near <= cloud).all()
+    # Five voxels of wall are hidden at either end; a metre from what is seen is not counted on.
+    assert near[1, 9:13, 20].all()
+    assert near[1, 27:31, 20].all()
+    assert not near[1, 15:25, 20].any()
+
+
+def test_a_narrow_gap_stays_open() -> None:
+    cloud, solid, free = hall((16, 24), 1)
+    near = hugging(cloud, solid, free, resolution_m=RES_M, hull_m=HULL_M)
+    assert not near[1, 18:22, 20].any()
+    assert near.any()
+
+
+def test_what_stands_apart_does_not_count() -> None:
+    cloud, solid, free = (np.zeros((3, 30, 30), bool) for _ in range(3))
+    cloud[:, 10:20, 10:20] = True
+    solid[:, 15, 24] = solid[0, 15, 20] = True  # a post somewhere else, a brick at the edge
+    free |= ~(cloud | solid)
+    assert not hugging(cloud, solid, free, resolution_m=RES_M, hull_m=HULL_M).any()
+    assert not hugging(cloud, np.zeros_like(solid), free, resolution_m=RES_M, hull_m=HULL_M).any()
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.integers(0, 2**32 - 1))
+def test_only_unseen_voxels_of_the_cloud_are_doubted(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    cloud, shape = np.zeros((2, 24, 24), bool), (2, 24, 24)
+    a, b = np.sort(rng.integers(0, 24, (2, 2)), axis=0)
+    cloud[:, a[0] : b[0] + 1, a[1] : b[1] + 1] = True
+    solid = rng.random(shape) < rng.uniform(0, 0.05)
+    free = (rng.random(shape) < 0.9) & ~solid
+    near = hugging(cloud, solid, free, resolution_m=RES_M, hull_m=HULL_M)
+    assert not (near & (free | ~cloud)).any()
