@@ -13,7 +13,7 @@ INSTRUCTIONS = ROOT.parent / "shared" / "data" / "instructions" / "mobile_manipu
 NOTES = (
     "The answers were written while the rules were made: what is measured on them is no forecast. Three batches of "
     "1,146, 941 and 292 new ones, the first two odd and hostile on purpose, were each read by rules that had not seen "
-    "them: 93.5, 91.0 and 96.6 % were understood, with 17, 18 and 2 Yes that were not said. What was missed was mended.",
+    "them: 93.5, 91.0 and 96.6 % were understood, with 17, 18 and 2 Yes that were not said. What was missed is mended.",
     "A Yes about an obstacle is never taken from a model: there it can only find a No.",
     "Ambiguous instructions: rules were made with an eye on the first 200 blocks only. Objects only, not places.",
 )

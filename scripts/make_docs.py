@@ -18,7 +18,19 @@ from mintpilot.mission.schema import MissionFile
 DOCS = Path(__file__).parents[1] / "docs"
 SCHEMA = MissionFile.model_json_schema()
 DEFINITIONS = SCHEMA["$defs"]
-COMMANDS = ("", "demo", "run", "plan", "check", "doctor", "bench table1", "bench boxes", "bench gaps", "bench report")
+COMMANDS = (
+    "",
+    "demo",
+    "run",
+    "plan",
+    "check",
+    "doctor",
+    "bench table1",
+    "bench boxes",
+    "bench gaps",
+    "bench language",
+    "bench report",
+)
 HEAD = """# The command line
 
 Written by `make docs`; do not edit. Results go to standard output, everything else to standard error, so that
