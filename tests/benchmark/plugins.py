@@ -10,6 +10,8 @@ hanging = tests.benchmark.small:Hanging
 stubborn = tests.benchmark.small:Stubborn
 dying = tests.benchmark.small:Dying
 missing = tests.benchmark.small:Nowhere
+[mintpilot.language]
+babbling = tests.benchmark.small:Babbling
 """
 
 

@@ -172,3 +172,23 @@ def test_command_prints_one_object(tmp_path: Path, capsys: pytest.CaptureFixture
 def test_command_names_the_nearest_strategy(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["bench", "table1", "--strategy", "knowknow", "--json"]) == 2
     assert "Did you mean 'knowno'" in json.loads(capsys.readouterr().out)["error"]["message"]
+
+
+def test_a_language_model_that_lacks_something_is_told_before_anything_is_flown(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.delenv("MINTPILOT_LLM_URL", raising=False)
+    folder = tmp_path / "records"
+    assert main(["bench", "table1", "--llm", "embeded", "--out", str(folder)]) == 2
+    assert "Did you mean 'embedded'" in capsys.readouterr().err
+    assert main(["bench", "table1", "--llm", "endpoint", "--out", str(folder)]) in (2, 3)
+    assert not folder.exists()
+
+
+@pytest.mark.usefixtures("bad_plugins")
+def test_a_lying_language_model_changes_no_outcome() -> None:
+    plain_records = [plain(r) for r in here(experiment("mint", trials=4)) if isinstance(r, TrialRecord)]
+    helped = experiment("mint", trials=4, llm="babbling")
+    lied_to = [plain(r) for r in here(helped) if isinstance(r, TrialRecord)]
+    assert [r["outcome"] for r in lied_to] == [r["outcome"] for r in plain_records]
+    assert [r["asked"] for r in lied_to] == [r["asked"] for r in plain_records]

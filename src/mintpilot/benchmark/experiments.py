@@ -12,6 +12,8 @@ from collections.abc import Sequence
 from importlib import metadata
 from typing import Literal
 
+from mintpilot.assembly.registry import load
+from mintpilot.assembly.talk import TEMPLATE
 from mintpilot.benchmark.calibration import calibrated
 from mintpilot.benchmark.experiment import Cell, Condition, Experiment
 from mintpilot.benchmark.methods import Method, method_of
@@ -57,18 +59,24 @@ Vehicle = Literal["kinematic", "mujoco"]
 
 
 def table1(
-    *, trials: int, seed: int, vehicle: Vehicle, strategies: Sequence[str] = (), time_limit_s: float | None = None
+    *,
+    trials: int,
+    seed: int,
+    vehicle: Vehicle,
+    strategies: Sequence[str] = (),
+    llm: str = TEMPLATE,
+    time_limit_s: float | None = None,
 ) -> Experiment:
     """The paper's Table 1: one cloud of smoke and one closed room in a warehouse on fire.
 
     Raises:
-        UnknownNameError: one of the strategies is not known.
+        UnknownNameError: one of the strategies, or the language model, is not known.
         InputError: a number is out of range, or a strategy is named twice.
     """
     # The yardstick is about the number of questions: in physics it would only repeat what the fast worlds tell.
     compared = TABLE1 if vehicle == "kinematic" else tuple(name for name in TABLE1 if name != "optimal")
     cell = Cell(scenario="fire-warehouse", methods=_methods((*compared, *strategies)))
-    return _experiment("table1", (cell,), trials, seed, vehicle, share_survey=True, time_limit_s=time_limit_s)
+    return _experiment("table1", (cell,), trials, seed, vehicle, share_survey=True, llm=llm, time_limit_s=time_limit_s)
 
 
 def boxes(
@@ -78,31 +86,40 @@ def boxes(
     vehicle: Vehicle,
     think_s: float = 3.0,
     strategies: Sequence[str] = (),
+    llm: str = TEMPLATE,
     time_limit_s: float | None = None,
 ) -> Experiment:
     """The paper's real-world task, in physics and through the camera: which box holds the medicine?
 
     Raises:
-        UnknownNameError: one of the strategies is not known.
+        UnknownNameError: one of the strategies, or the language model, is not known.
         InputError: a number is out of range, or a strategy is named twice.
     """
     cell = Cell(scenario="medicine-boxes", methods=_methods((*BOXES, *strategies)))
-    return _experiment("boxes", (cell,), trials, seed, vehicle, think_s=think_s, time_limit_s=time_limit_s)
+    return _experiment("boxes", (cell,), trials, seed, vehicle, think_s=think_s, llm=llm, time_limit_s=time_limit_s)
 
 
 def gaps(
-    *, trials: int, seed: int, vehicle: Vehicle, strategies: Sequence[str] = (), time_limit_s: float | None = None
+    *,
+    trials: int,
+    seed: int,
+    vehicle: Vehicle,
+    strategies: Sequence[str] = (),
+    llm: str = TEMPLATE,
+    time_limit_s: float | None = None,
 ) -> Experiment:
     """Beyond the paper: one to eight gaps of mixed kinds; then four, with answers and beliefs that are not perfect.
 
     Raises:
-        UnknownNameError: one of the strategies is not known.
+        UnknownNameError: one of the strategies, or the language model, is not known.
         InputError: a number is out of range, or a strategy is named twice.
     """
     methods = _methods((*GAPS, *strategies))
     cells = [_gap_cell(f"k = {k}", k, Condition(), methods) for k in range(1, MOST_GAPS + 1)]
     cells += [_gap_cell(name, 4, condition, methods) for name, condition in CONDITIONS]
-    return _experiment("gaps", tuple(cells), trials, seed, vehicle, tell_prices=True, time_limit_s=time_limit_s)
+    return _experiment(
+        "gaps", tuple(cells), trials, seed, vehicle, tell_prices=True, llm=llm, time_limit_s=time_limit_s
+    )
 
 
 def gap_parameters(k: int) -> dict[str, float]:
@@ -142,6 +159,7 @@ def _experiment(
     think_s: float = 3.0,
     tell_prices: bool = False,
     share_survey: bool = False,
+    llm: str = TEMPLATE,
     time_limit_s: float | None = None,
 ) -> Experiment:
     if trials < 1:
@@ -152,6 +170,7 @@ def _experiment(
         raise InputError(f"--think {think_s:g}: must be from 0 to 30 s; the drone waits no longer than that")
     if time_limit_s is not None and not time_limit_s > 0:
         raise InputError(f"--time-limit {time_limit_s:g}: must be above 0 s")
+    load("language", llm)
     usual_s = 120.0 if vehicle == "kinematic" else 900.0
     return Experiment(
         name=name,
@@ -163,6 +182,7 @@ def _experiment(
         tell_prices=tell_prices,
         time_limit_s=usual_s if time_limit_s is None else time_limit_s,
         share_plans=vehicle == "kinematic",
+        llm=llm,
         share_survey=share_survey and vehicle == "mujoco",
         versions=versions(),
     )

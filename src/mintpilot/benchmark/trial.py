@@ -8,6 +8,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from mintpilot.assembly.crews import Choices, VehicleChoice, crew_for, scripted_operator
+from mintpilot.assembly.talk import talk_for
 from mintpilot.assembly.worlds import World
 from mintpilot.benchmark.conditions import asking_for
 from mintpilot.benchmark.deadline import TrialTimeoutError, deadline
@@ -20,7 +21,7 @@ from mintpilot.core.mission import Outcome, Verdict
 from mintpilot.core.ports import Planner
 from mintpilot.core.semantic_map import SemanticMap
 from mintpilot.mission.loop import Crew, fly_mission
-from mintpilot.mission.schema import OperatorSpec
+from mintpilot.mission.schema import LanguageSpec, OperatorSpec
 
 RAISED = "raised"
 """Outcome of a trial whose method, or a part under it, raised an exception."""
@@ -131,7 +132,8 @@ class _Flight:
         )
         choices = Choices(strategy="mint", vehicle=VehicleChoice(experiment.vehicle))
         operator = scripted_operator(world, person)
-        with crew_for(world, choices, operator=operator, recorder=tally) as crew:
+        talk = talk_for(LanguageSpec(), llm=experiment.llm)
+        with crew_for(world, choices, operator=operator, recorder=tally, talk=talk) as crew:
             thinking = replace(crew.thinking, strategy=make_strategy(method, world.seed))
             if planner is not None:
                 thinking = replace(thinking, planner=planner)

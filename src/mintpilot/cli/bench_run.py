@@ -4,48 +4,41 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeRemainingColumn
 from rich.progress import Progress as Bar
 
+from mintpilot.assembly.talk import talk_for
 from mintpilot.benchmark.experiment import Experiment
 from mintpilot.benchmark.records import Record
-from mintpilot.benchmark.runner import Executor, Progress, RunOptions, run_experiment
+from mintpilot.benchmark.runner import Progress, RunOptions, run_experiment
 from mintpilot.benchmark.store import read_config, read_records, write_parquet
 from mintpilot.benchmark.summary import Row, Summary, summarise
 from mintpilot.benchmark.tables import print_summary
+from mintpilot.cli.bench_flags import BenchFlags
 from mintpilot.cli.exits import ExitCode
 from mintpilot.core.errors import MissingPartError
+from mintpilot.mission.schema import LanguageSpec
 
 JSON_VERSION = 1
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class BenchOptions:
-    """How an experiment is run, as the command line says it."""
-
-    jobs: int
-    executor: Executor
-    ray_address: str
-    out: Path | None
-    as_json: bool
-
-
-def run_bench(experiment: Experiment, options: BenchOptions) -> ExitCode:
+def run_bench(experiment: Experiment, flags: BenchFlags) -> ExitCode:
     """Runs what is left of the experiment, and prints its tables from the records."""
     errors = Console(stderr=True, highlight=False, soft_wrap=True)
-    folder = options.out or Path("runs") / f"bench-{experiment.name}-{experiment.digest()}"
-    run = RunOptions(folder=folder, jobs=options.jobs, executor=options.executor, ray_address=options.ray_address)
+    folder = flags.out or Path("runs") / f"bench-{experiment.name}-{experiment.digest()}"
+    with talk_for(LanguageSpec(), llm=experiment.llm):
+        pass  # what a model lacks is told now, not once in every trial
+    run = RunOptions(folder=folder, jobs=flags.jobs, executor=flags.executor, ray_address=flags.ray_address)
     try:
         with _Meter(errors, experiment) as meter:
             progress = run_experiment(experiment, run, meter)
     except KeyboardInterrupt:
         errors.print(f"Stopped. Finished trials are in {folder}; the same command goes on from there.")
         raise
-    errors.print(_throughput(progress, options))
+    errors.print(_throughput(progress, flags))
     try:
         write_parquet(folder)
     except MissingPartError as error:
@@ -53,7 +46,7 @@ def run_bench(experiment: Experiment, options: BenchOptions) -> ExitCode:
     trials, worlds = read_records(folder)
     last = experiment.seed + experiment.trials
     summary = summarise(experiment, [t for t in trials if t.seed < last], [w for w in worlds if w.seed < last])
-    if options.as_json:
+    if flags.json:
         print(json.dumps(as_json(experiment, summary, folder, progress), ensure_ascii=False))
     else:
         print_summary(experiment, summary, Console())
@@ -90,13 +83,13 @@ def _row(row: Row) -> dict[str, object]:
     return row.model_dump(mode="json")
 
 
-def _throughput(progress: Progress, options: BenchOptions) -> str:
+def _throughput(progress: Progress, flags: BenchFlags) -> str:
     if not progress.done:
         return f"All {progress.trials} trials had a record already; nothing was flown."
     kept = f" ({progress.before} were finished before)" if progress.before else ""
     return (
         f"{progress.done} missions{kept} in {progress.seconds:.1f} s: {progress.per_minute:.0f} missions per minute, "
-        f"{options.jobs} workers, executor {options.executor}."
+        f"{flags.jobs} workers, executor {flags.executor}."
     )
 
 
