@@ -7,7 +7,7 @@ from pathlib import Path
 
 from bench.sections import ROOT, Section, Table, keep
 from mintpilot.assembly.registry import load
-from mintpilot.benchmark.language_report import LanguageOptions, language_tables, measure_language
+from mintpilot.benchmark.language_report import LanguageOptions, language_tables, measure_language, models_there
 
 INSTRUCTIONS = ROOT.parent / "shared" / "data" / "instructions" / "mobile_manipulation.txt"
 NOTES = (
@@ -27,9 +27,10 @@ def main() -> None:
     parser.add_argument("--dry", action="store_true", help="print only; leave docs/results.md alone")
     options = parser.parse_args()
     instructions = options.instructions if options.instructions.exists() else None
-    models = {name: load("language", name) for name in options.llm}
+    names = options.llm or models_there()
+    models = {name: load("language", name) for name in names}
     result = measure_language(LanguageOptions(models=models, instructions=instructions, sample=options.sample), print)
-    named = "".join(f" --llm {name}" for name in options.llm)
+    named = "".join(f" --llm {name}" for name in names)
     section = Section(
         name="50-language",
         title="Language: the rules alone, and with models",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
@@ -63,6 +64,11 @@ class LanguageOptions:
     """A file in IntroPlan's form."""
     sample: int = 60
     """Answers, and held-out ambiguous instructions, that a model is given; drawn with seed 0."""
+
+
+def models_there() -> tuple[str, ...]:
+    """The models to try where none is named: what they lack is told among what was left out."""
+    return ("embedded", *(["endpoint"] if os.environ.get("MINTPILOT_LLM_URL") else []))
 
 
 def measure_language(options: LanguageOptions, progress: Callable[[str], None] = lambda _: None) -> LanguageResult:

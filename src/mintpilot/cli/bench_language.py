@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 from collections.abc import Callable, Sequence
 from dataclasses import asdict
 from pathlib import Path
@@ -20,6 +19,7 @@ from mintpilot.benchmark.language_report import (
     LanguageResult,
     language_tables,
     measure_language,
+    models_there,
 )
 from mintpilot.cli.exits import ExitCode
 from mintpilot.core.errors import InputError
@@ -27,7 +27,6 @@ from mintpilot.core.errors import InputError
 if TYPE_CHECKING:
     from mintpilot.core.ports import LanguageModel
 
-ADDRESS = "MINTPILOT_LLM_URL"
 FILE = "language.json"
 
 
@@ -42,7 +41,7 @@ def bench_language(
     if sample < 1:
         raise InputError(f"--sample {sample}: must be 1 or more")
     errors = Console(stderr=True, highlight=False, soft_wrap=True)
-    names = [name for name in (llm or _there()) if name != RULES]
+    names = [name for name in (llm or models_there()) if name != RULES]
     options = LanguageOptions(models={name: _maker(name) for name in names}, instructions=instructions, sample=sample)
     result = measure_language(options, errors.print)
     if out is not None:
@@ -53,11 +52,6 @@ def bench_language(
     else:
         _print(result)
     return ExitCode.SUCCESS
-
-
-def _there() -> list[str]:
-    """The models to try where none is named: what is missing is told among what was left out."""
-    return ["embedded", *(["endpoint"] if os.environ.get(ADDRESS) else [])]
 
 
 def _maker(name: str) -> Callable[[], LanguageModel]:
