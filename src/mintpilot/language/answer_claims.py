@@ -127,6 +127,10 @@ def _benign(scan: Scan, _: Atom) -> None:
         scan.claim(Claim.PASSABLE)
 
 
+def _rule_out(scan: Scan, _: Atom) -> None:
+    scan.part.rules_out = True
+
+
 def _minimise(scan: Scan, _: Atom) -> None:
     scan.part.minimised = True
 
@@ -147,5 +151,5 @@ _HANDLERS: dict[Kind, Callable[[Scan, Atom], None]] = {
     Kind.UNLIKELY: _unlikely, Kind.SOFT: _soft, Kind.VERY: _very, Kind.AGREE: _agree, Kind.STALL: _stall,
     Kind.CONDITION: _condition, Kind.PAST: _past, Kind.MOCK: _mock, Kind.THROUGH: _good, Kind.SAFE: _good,
     Kind.DANGER: _danger, Kind.HAZARD: _danger, Kind.BENIGN: _benign, Kind.MINIMISE: _minimise, Kind.CLEAR:
-    _clear,
+    _clear, Kind.DENIED: _rule_out,
 }  # fmt: skip

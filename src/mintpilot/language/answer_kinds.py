@@ -59,6 +59,8 @@ class Kind(StrEnum):
     UNSURE = "unsure"
     RISK = "risk"
     """Consent that knows of a danger: ``risk it``."""
+    DENIED = "denied"
+    """Stands for what an answer rules out by name: a ``no`` after it only repeats that."""
     ELSEWHERE = "elsewhere"
     """Another place than the one asked about."""
     STALL = "stall"

@@ -74,6 +74,7 @@ def _trapped(scan: Scan, atom: Atom) -> None:
 
 def _out(scan: Scan, _: Atom) -> None:
     part = scan.part
+    scan.said.is_parting |= part.subject in (Kind.EVERYBODY, Kind.ONE) and not part.negated
     if part.some and not part.negated:
         scan.claim(Claim.UNCLEAR)
     elif part.subject is Kind.NOBODY:
@@ -115,11 +116,16 @@ def _exist(scan: Scan, _: Atom) -> None:
     scan.part.exists = True
 
 
+def _occupied(scan: Scan, atom: Atom) -> None:
+    scan.part.denied |= atom.text.startswith("not ")
+    scan.claim(Claim.ABSENT if scan.part.negated else Claim.PRESENT)
+
+
 PEOPLE: dict[Kind, Callable[[Scan, Atom], None]] = {
     Kind.PERSON: _person, Kind.NUMBER: _number, Kind.ONE: _subject, Kind.EVERYBODY: _subject, Kind.NOBODY:
     _nobody, Kind.SOME: _some, Kind.INSIDE: _inside, Kind.TRAPPED: _trapped, Kind.OUT: _out, Kind.LEFT: _left,
     Kind.TRACE: _trace, Kind.PERCEIVE: _perceive, Kind.EXIST: _exist,
     Kind.EMPTY: lambda scan, _: scan.claim(Claim.PRESENT if scan.part.negated else Claim.ABSENT),
-    Kind.OCCUPIED: lambda scan, _: scan.claim(Claim.ABSENT if scan.part.negated else Claim.PRESENT),
+    Kind.OCCUPIED: _occupied,
 }  # fmt: skip
 """Class → what it does."""

@@ -48,6 +48,8 @@ class Said:
     is_past: bool = False
     was_then: bool = False
     """True for ``was``: of the past, but perhaps still so."""
+    is_parting: bool = False
+    """True when people are said to have gone out, which the past makes no less true."""
     is_mockery: bool = False
     is_benign: bool = False
     waits: bool = False
@@ -77,6 +79,9 @@ class Part:
     bare: Kind | None = None
     """People of whom nothing was said yet."""
     passes_over: bool = False
+    denied: bool = False
+    """True once a negation was said in it."""
+    rules_out: bool = False
     claims: set[Claim] = field(default_factory=set)
     strange: int = 0
 
@@ -90,6 +95,7 @@ class Scan:
         self.part = Part()
         self.any_doubt = False
         self._doubt_alone = False
+        self._denied_before = False
         self._handlers = handlers
 
     def read(self, atoms: Sequence[Atom]) -> Said:
@@ -140,11 +146,13 @@ class Scan:
             self.part.passes_over = True
         elif following is Kind.PLACE or (following is Kind.STRANGE and self.about is not GapKind.OBSTACLE):
             self.claim(Claim.UNCLEAR)
-        else:
+        elif following is not Kind.BREAK or not self._denied_before:
             self.claim(Claim.NO)
 
     def _close(self) -> None:
+        """Ends the part; ``not the red ones, no``, ``not empty, no`` say one thing twice."""
         part = self.part
+        self._denied_before = part.rules_out or (part.denied and Claim.PRESENT in part.claims)
         if not part.claims - {Claim.BOOST}:
             self._settle_bare(part)
         if part.negated:
@@ -169,7 +177,7 @@ def deny(scan: Scan) -> None:
     """Opens a negation; a second one before the first found anything makes the answer unclear."""
     if scan.part.negated:
         scan.claim(Claim.UNCLEAR)
-    scan.part.negated = True
+    scan.part.negated = scan.part.denied = True
 
 
 def deny_knowing(scan: Scan) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import dataclass
 
 CORRECTION = re.compile(
     r"\b(?:actually|no wait|wait no(?= \w)|(?<!what )i mean(?! it\b)|i meant|sorry|correction|scratch that|strike that"
@@ -30,6 +31,33 @@ NOT_ASKED = re.compile(
     r"\bwhy (?:not|would it not)\b|\b(?:which one|what was that|how should i know|how would i know|how am i)\b"
     r"|\bare you (?:crazy|mad|insane|nuts|kidding|serious|out of your mind)\b|\bhave you lost your mind\b|\bwhat the\b"
 )
+_STATEMENT = re.compile(
+    r"[ ,.;]*(?:(?:now|then|actually|well|not) )*(?:it|that|this|there|these|they|he|she|we|i|you|somebody|someone|everybody"
+    r"|everyone|all of them|the|a|an|one)\b"
+)
+"""How something new begins that is said of the world: no mere ``but toxic``, ``but only if``."""
+_WAS = re.compile(r"\b(?:was|were|used to|had been|had)\b")
+
+
+@dataclass(frozen=True, slots=True)
+class Turn:
+    """An answer that turns at a ``but``: ``it was jammed, but now it is open``."""
+
+    after: str
+    is_past: bool
+    """Whether what stands before it tells how it was."""
+    is_now: bool
+    """Whether what stands after it says how it is now."""
+
+
+def turn(words: str) -> Turn | None:
+    """The last turn of an answer, if there is one."""
+    before, but, after = words.rpartition(" but ")
+    if not but:
+        before, but, after = words.rpartition(" , now ")
+    if not before.strip(" ,.;") or _STATEMENT.match(after) is None:
+        return None
+    return Turn(after, _WAS.search(before) is not None, "now" in (*but.split(), *after.split()))
 
 
 def corrected(words: str) -> str:

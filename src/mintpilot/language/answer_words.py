@@ -169,6 +169,7 @@ ATTITUDES: dict[Kind, str] = {
         oh wonderful|oh perfect|oh brilliant|oh fantastic|just great|just perfect|just wonderful|just what we need|
         burn the drone|fried|crispy|cremate|cremated|funeral|coffin|insurance|warranty|picnic
     """,
+    Kind.DENIED: "nosuch",
     Kind.SUBJECT: "it|that|this|there|you|one|ones|these|those",
     Kind.PLACE: """
         the smoke|the way|the path|the area|the room|the door|smoke|cloud|room|door|area|path|passage|route|gate|

@@ -18,7 +18,7 @@ from mintpilot.core.query import Combine, Command, Literal, Question, Reply
 from mintpilot.language.answer_claims import read_claims
 from mintpilot.language.answer_lexing import atoms, plain
 from mintpilot.language.answer_scope import Claim, Said
-from mintpilot.language.answer_turns import GENTLE, NO_SPEECH, PLAIN_NO, asks_back, corrected
+from mintpilot.language.answer_turns import GENTLE, NO_SPEECH, PLAIN_NO, asks_back, corrected, turn
 from mintpilot.language.orders import order_in
 from mintpilot.language.referring import Mention, mention, said_relation
 from mintpilot.language.slips import may_hide_caution
@@ -31,6 +31,8 @@ _STATED = {
     Claim.PRESENT: (GapKind.PRESENCE, PRESENT),
     Claim.ABSENT: (GapKind.PRESENCE, ABSENT),
 }
+_NONE_OF_THEM = ""
+"""Stands for a thing that is no value of a target gap."""
 _MOST_STRANGE = {
     "yes, explained": 4,
     "yes": 1,
@@ -88,7 +90,23 @@ def understand_answer(text: str, question: Question) -> Understood:
         return Understood(reading=Reading.COMMAND, command=order)
     if not words or len(words) > _LONGEST or NO_SPEECH.search(text):
         return Understood(reading=Reading.OTHER)
-    return _read(corrected(words), question)
+    words = corrected(words)
+    return _turned(words, question) or _read(words, question)
+
+
+def _turned(words: str, question: Question) -> Understood | None:
+    """What is said after a ``but`` where it outweighs what stands before; None otherwise.
+
+    A danger, or another thing than the one asked about, does; of rooms and ways, how it is now against how it was.
+    """
+    found = turn(words)
+    if found is None:
+        return None
+    after, about = _read(found.after, question), _topic(question)
+    if after.reading is Reading.NO and (about is not GapKind.OBSTACLE or _no_is_careful(question)):
+        return after if found.is_past or about is not GapKind.PRESENCE else None
+    outweighs = found.is_past and (about is GapKind.PRESENCE or found.is_now)
+    return after if after.reading is Reading.YES and outweighs else None
 
 
 def _read(words: str, question: Question) -> Understood:
@@ -101,6 +119,11 @@ def _read(words: str, question: Question) -> Understood:
     reading = _weighed(readings, said, said_of, words, question)
     also = said_of.literal() if said_of.values and reading in (Reading.YES, Reading.NO) else None
     return Understood(reading=reading, also=also)
+
+
+def _no_is_careful(question: Question) -> bool:
+    """Whether a No keeps the vehicle out of all regions asked about."""
+    return not question.query.holds(dict.fromkeys(question.query.gap_ids, BLOCKED))
 
 
 def _topic(question: Question) -> GapKind:
@@ -146,25 +169,22 @@ def _weighed(readings: set[Reading], said: Said, said_of: Mention, words: str, q
         return Reading.OTHER
     if said.is_hedged and reading is not careful:
         return Reading.UNSURE
-    if (
-        said.is_past
-        and not said.plain & {Claim.YES, Claim.NO}
-        and reading is not careful
-        and Claim.PRESENT not in said.claims
-    ):
-        return Reading.UNSURE
-    if said.was_then and Claim.YES not in said.plain and said.claims & {Claim.PASSABLE, Claim.AGREE}:
+    if (reading is not careful and _is_long_ago(said)) or _was_free(said):
         return Reading.UNSURE
     if reading is Reading.YES and may_hide_caution(said.strange):
         return Reading.OTHER
     return reading if len(said.strange) <= _MOST_STRANGE[_basis(reading, said, question)] else Reading.OTHER
 
 
-def _is_of_the_past(said: Said) -> bool:
-    """Whether it only tells how it was, which may have changed; that somebody was there still counts."""
-    long_ago = said.is_past and not said.plain & {Claim.YES, Claim.NO} and Claim.PRESENT not in said.claims
-    was_free = said.was_then and Claim.YES not in said.plain and said.claims & {Claim.PASSABLE, Claim.AGREE}
-    return long_ago or bool(was_free)
+def _is_long_ago(said: Said) -> bool:
+    """Whether it tells how it was, which may have changed; that somebody was there, or left, still counts."""
+    stays = Claim.PRESENT in said.claims or said.is_parting
+    return said.is_past and not said.plain & {Claim.YES, Claim.NO} and not stays
+
+
+def _was_free(said: Said) -> bool:
+    """Whether a way is only said to have been free."""
+    return said.was_then and Claim.YES not in said.plain and bool(said.claims & {Claim.PASSABLE, Claim.AGREE})
 
 
 def _is_refusal(said: Said) -> bool:
@@ -208,6 +228,8 @@ def _is_of_all(words: str, question: Question) -> bool:
 
 
 def _by_mention(said: Mention, claims: set[Claim], question: Question) -> set[Reading]:
+    if said.another and said.gap is not None:
+        return {_settled(said.gap.id, {_NONE_OF_THEM}, question)}
     if not said.values or said.gap is None:
         return set()
     reading = _settled(said.gap.id, set(said.values), question)

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 from mintpilot.core.gap import Candidate, GapKind, KnowledgeGap
 from mintpilot.core.query import Literal, Question, Saying, SayingKind
+from mintpilot.language.lexicon import ADJECTIVES
 
 _ALIKE = {
     **dict.fromkeys(("big", "bigger", "biggest", "larger", "largest", "huge"), "large"),
@@ -25,9 +26,18 @@ _OPPOSITES = tuple(
     )
 )
 _STOP = frozenset(("the", "a", "an", "of", "with", "and", "to", "near", "one", "it", "is", "on", "in", "at", "by"))
-_SUCH = "such"
-"""Stands in the rest of an answer for the words that named candidates."""
-_NOT = re.compile(r"\b(?:not|never|nor|neither|except|without)\b(?: (?:the|a|an|that|this|any))*$")
+_SUCH, _NO_SUCH = "such", "nosuch"
+"""Stand in the rest of an answer for the words that named candidates, and for those that ruled them out."""
+_NOT = re.compile(
+    r"\b(?:not|never|nor|neither|except|without|none of|any\w* but|all but|other than|instead of|used to be)\b"
+    r"(?: (?:the|a|an|that|this|any|of|those|these|one(?= of)))*$"
+)
+_COLOURS = frozenset(word for word, (name, _) in ADJECTIVES.items() if name == "colour")
+_BESIDE = re.compile(
+    r"\b(?:the|that) \w+ (?:right |just )?(?:behind|beside|next to|under|above|below|in front of|opposite|(?:to the )?left of"
+    r"|(?:to the )?right of|across from) (?:it|that one|this one|that|this)(?= *$| *[,.;!])"
+)
+"""Another thing than the one asked about, told by where it is: ``the one behind it``."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -41,6 +51,8 @@ class Mention:
     """The answer without those words."""
     confused: bool = False
     """True when it names candidates in a way that leaves none."""
+    another: bool = False
+    """True when it names only such as are none of the candidates: ``the black one``, ``the one behind it``."""
 
     def literal(self) -> Literal | None:
         """The same as a cut that is answered Yes."""
@@ -61,21 +73,23 @@ def mention(words: str, gaps: Sequence[KnowledgeGap]) -> Mention:
         return Mention(gap=None, values=frozenset(), rest=words)
     (gap,) = targets
     named, ruled_out, rest = set(gap.values), set[str](), list[str]()
-    any_named = False
+    runs_named: list[set[str]] = []
     for run in _runs(words, gap):
         if isinstance(run, str):
             rest.append(run)
-        elif _NOT.search(" ".join(rest[-4:])):
+        elif (denied := _NOT.search(before := " ".join(rest))) is not None:
             ruled_out |= run
-            _take_back(rest)
-            rest.append(_SUCH)
+            rest = [*before[: denied.start()].split(), _NO_SUCH]
         else:
             rest.append(_SUCH)
             named &= run
-            any_named = True
-    values = named - ruled_out if any_named or ruled_out else set()
-    confused = not values and (any_named or bool(ruled_out))
-    return Mention(gap=gap, values=frozenset(values), rest=" ".join(rest), confused=confused)
+            runs_named.append(run)
+    values = named - ruled_out if runs_named or ruled_out else set()
+    another = bool(runs_named) and not any(runs_named)
+    confused = not values and not another and bool(runs_named or ruled_out)
+    if _BESIDE.search(words) is not None:
+        values, confused, another = set(), False, True
+    return Mention(gap=gap, values=frozenset(values), rest=" ".join(rest), confused=confused, another=another)
 
 
 def said_relation(words: str, question: Question) -> bool | None:
@@ -105,17 +119,18 @@ def _says(words: str, names: frozenset[str]) -> set[bool]:
 
 def _runs(words: str, gap: KnowledgeGap) -> Iterator[str | set[str]]:
     """Words that say nothing of the candidates, and for each run of others (``small red``) those that fit all of it."""
-    run: set[str] = set()
+    run: set[str] | None = None
     for token in re.finditer(r"[\w']+|[,.;!?]", words):
         fits = {c.id for c in gap.candidates if _ALIKE.get(token[0], token[0]) in _words_of(c)}
-        if fits and len(fits) < len(gap.candidates):
-            run = run & fits if run else fits
+        is_known = 0 < len(fits) < len(gap.candidates)
+        if is_known or (not fits and token[0] in _COLOURS):
+            run = fits if run is None else run & fits
             continue
-        if run:
+        if run is not None:
             yield run
-        run = set()
+        run = None
         yield token[0]
-    if run:
+    if run is not None:
         yield run
 
 
@@ -124,11 +139,3 @@ def _words_of(candidate: Candidate) -> frozenset[str]:
     values = (*(a.value for a in candidate.attributes), candidate.description)
     said = " ".join(values).lower().replace("_", " ")
     return frozenset(_ALIKE.get(w, w) for w in re.findall(r"\w+", said)) - _STOP
-
-
-def _take_back(rest: list[str]) -> None:
-    """Takes the negation off that was used up by what follows it."""
-    while rest and rest[-1] in ("the", "a", "an", "that", "this", "any"):
-        rest.pop()
-    if rest:
-        rest.pop()
