@@ -15,6 +15,7 @@ from mintpilot.core.ports import LanguageModel
 from mintpilot.core.query import Combine, Literal, Query, Question, SayingKind
 from mintpilot.core.tree import Mint
 from mintpilot.language.doubles import NoModel
+from mintpilot.language.tongue_places import PLACES, split_places
 from mintpilot.language.tongues import ATTRIBUTE, TONGUES, VALUE, Tongue
 from mintpilot.language.wording import ModelWording, Wording
 
@@ -87,8 +88,10 @@ class TranslatedWording:
 
 def noun_phrase(english: str, tongue: Tongue) -> str:
     """``the grey smoke near the gate`` in that language; in quotation marks and English where a word is not known."""
-    parts = _NEAR.split(english)
+    named, places = split_places(english)
+    parts = _NEAR.split(named)
     said = [_nominal(part, tongue, is_place=i > 0) for i, part in enumerate(parts)]
+    said += [PLACES[tongue.name].get(place, "") for place in places]
     return " ".join(said) if all(said) else f"“{english}”"
 
 
@@ -137,7 +140,7 @@ def _subject(literal: Literal, gap: KnowledgeGap, tongue: Tongue) -> str:
     if literal.saying.kind is SayingKind.ATTRIBUTE:
         forms = tongue.adjectives.get(literal.saying.value, "").split()
         # An attribute that is no adjective ("eyes: blue") has no short sentence here.
-        return forms[0] if forms and literal.saying.name in ("colour", "color", "size") else ""
+        return forms[0] if forms and literal.saying.name in ("colour", "color", "size", "shape") else ""
     named = next((c.description for c in gap.candidates if c.id == literal.saying.value), "")
     alike = [c for c in gap.candidates if c.description == named]
     return noun_phrase(named, tongue) if named and len(alike) == 1 else ""
