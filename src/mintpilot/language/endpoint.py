@@ -69,10 +69,12 @@ class EndpointModel(LanguageModel):
         self._model = model or environment.get(MODEL_VARIABLE, "")
         self._mode = mode or _mode_in(environment)
         parts = urlsplit(self._url)
+        # Never the whole address: somebody may have put a key into it.
+        shown = f"'{parts.scheme}://{parts.hostname or ''}'" if self._url else "that is not given"
         if parts.scheme not in ("http", "https") or not parts.hostname or parts.username or parts.password:
             raise InputError(
-                f"language model address '{parts.scheme}://{parts.hostname}' cannot be used: set {URL_VARIABLE} to an "
-                "http or https address without a key in it, e.g. http://localhost:11434/v1"
+                f"language model address {shown} cannot be used: set {URL_VARIABLE} to an http or https address "
+                "without a key in it, e.g. http://localhost:11434/v1"
             )
         if not self._model:
             raise InputError(f"no language model is named for {parts.hostname}: set {MODEL_VARIABLE}, e.g. 'qwen3:4b'")
