@@ -20,6 +20,9 @@ _DENIED_IS_SAFE = _words(
 )
 """Of the dangers, those whose absence means that the way is free; without a fire there may still be gas."""
 
+_OF_PEOPLE_TOO = _words("stuck hurt awful terrible bad horrible nasty lousy hot trapped")
+"""Of the dangers, those that are none of the way where ``we`` or ``my brother`` is."""
+
 
 def read_claims(atoms: Sequence[Atom], about: GapKind) -> Said:
     """What an answer claims about the kind of thing that was asked."""
@@ -109,7 +112,9 @@ def _good(scan: Scan, _: Atom) -> None:
 
 def _danger(scan: Scan, atom: Atom) -> None:
     part = scan.part
-    if not part.negated:
+    if part.of_others and atom.text in _OF_PEOPLE_TOO:
+        _strange(scan, atom)
+    elif not part.negated:
         scan.claim(Claim.BLOCKED)
     elif part.soft:
         scan.claim(Claim.UNSURE)

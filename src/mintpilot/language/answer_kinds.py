@@ -40,6 +40,8 @@ class Kind(StrEnum):
     TRAPPED = "trapped"
     EMPTY = "empty"
     OCCUPIED = "occupied"
+    THING = "thing"
+    """What may be in a room instead of people: ``just boxes``."""
     TRACE = "trace"
     """What people in a room make: ``voices``, ``knocking``."""
     PERCEIVE = "perceive"

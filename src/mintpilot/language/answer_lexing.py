@@ -16,7 +16,7 @@ _ABOUT_WAYS = frozenset((Kind.THROUGH, Kind.AROUND, Kind.SAFE, Kind.DANGER, Kind
 _ABOUT_PEOPLE = frozenset(
     (
         *(Kind.PERSON, Kind.ONE, Kind.EVERYBODY, Kind.SOME, Kind.INSIDE, Kind.OUT, Kind.LEFT, Kind.TRAPPED),
-        *(Kind.EMPTY, Kind.OCCUPIED, Kind.TRACE, Kind.PERCEIVE, Kind.NUMBER, Kind.EXIST),
+        *(Kind.THING, Kind.EMPTY, Kind.OCCUPIED, Kind.TRACE, Kind.PERCEIVE, Kind.NUMBER, Kind.EXIST),
     )
 )
 _UNHEARD: dict[GapKind, frozenset[Kind]] = {
@@ -26,7 +26,9 @@ _UNHEARD: dict[GapKind, frozenset[Kind]] = {
     GapKind.VALUE: _ABOUT_WAYS | _ABOUT_PEOPLE | {Kind.ELSEWHERE, Kind.CLEAR, Kind.PAST},
 }
 """Classes that say nothing about the kind of thing that was asked."""
-_FOREIGN = frozenset((Kind.DANGER, Kind.HAZARD, Kind.BENIGN, Kind.PERSON, Kind.ONE, Kind.EVERYBODY, Kind.TRACE))
+_FOREIGN = frozenset(
+    (Kind.DANGER, Kind.HAZARD, Kind.BENIGN, Kind.PERSON, Kind.ONE, Kind.EVERYBODY, Kind.TRACE, Kind.THING)
+)
 """Of these, the ones that make an answer one about something else."""
 
 _OPEN = (
@@ -74,12 +76,16 @@ _ENDING = frozenset(
         ("please", "do"),
         ("that", "is"),
         ("it", "should"),
+        ("bang", "on"),
+        ("dead", "on"),
     )
 )
 _JUDGING = frozenset((("good",), ("fine",)))
 """Consent only where they are the whole of what is said: not in ``good morning``."""
-_AFTER_JUDGING = frozenset(["to", "go", "by", "with", "then", "now", "thanks", "so", "for"])
+_AFTER_JUDGING = frozenset(["to", "go", "by", "with", "then", "now", "thanks", "so", "for", "we", "you", "just"])
 _AUXILIARY = frozenset(["can", "may", "should", "is", "are", "do", "does", "did", "will", "would", "could", "must"])
+_TELLING = frozenset(["is", "was", "has", "had", "are"])
+"""What makes no consent of ``that one``: ``that one is full of nails``."""
 _SHORTEST_MENDED = 6
 _MENDED = frozenset((Kind.DANGER, Kind.HAZARD, Kind.NO, Kind.CONDITION, Kind.NOBODY))
 _MENDED_LONG = _MENDED | {Kind.UNSURE, Kind.SAFE, Kind.YES, Kind.BOOST, Kind.LIKELY, Kind.EMPTY}
@@ -142,7 +148,8 @@ def _fits(phrase: tuple[str, ...], tokens: list[str], at: int, kind: Kind) -> bo
     is_denied = (
         kind in (Kind.YES, Kind.AGREE, Kind.BOOST) and tokens[end : end + 1] == ["not"] and phrase[-1] in _AUXILIARY
     )
-    return not is_denied
+    is_told = kind is Kind.YES and phrase[-1] == "one" and not ends and tokens[end] in _TELLING
+    return not (is_denied or is_told)
 
 
 @cache

@@ -116,6 +116,15 @@ def _exist(scan: Scan, _: Atom) -> None:
     scan.part.exists = True
 
 
+def _thing(scan: Scan, atom: Atom) -> None:
+    """``only a dummy``: nobody; by itself a thing says nothing of people."""
+    if scan.part.minimised and not scan.part.negated:
+        scan.claim(Claim.ABSENT)
+    else:
+        scan.said.strange.append(atom.text)
+        scan.part.strange += 1
+
+
 def _occupied(scan: Scan, atom: Atom) -> None:
     scan.part.denied |= atom.text.startswith("not ")
     scan.claim(Claim.ABSENT if scan.part.negated else Claim.PRESENT)
@@ -126,6 +135,7 @@ PEOPLE: dict[Kind, Callable[[Scan, Atom], None]] = {
     _nobody, Kind.SOME: _some, Kind.INSIDE: _inside, Kind.TRAPPED: _trapped, Kind.OUT: _out, Kind.LEFT: _left,
     Kind.TRACE: _trace, Kind.PERCEIVE: _perceive, Kind.EXIST: _exist,
     Kind.EMPTY: lambda scan, _: scan.claim(Claim.PRESENT if scan.part.negated else Claim.ABSENT),
+    Kind.THING: _thing,
     Kind.OCCUPIED: _occupied,
 }  # fmt: skip
 """Class → what it does."""

@@ -33,6 +33,7 @@ class Claim(StrEnum):
     """``no toxic fumes``: a denial, or a No and its reason."""
 
 
+_WORLD = frozenset((Claim.PRESENT, Claim.ABSENT, Claim.BLOCKED, Claim.PASSABLE))
 _PLAIN = frozenset((Claim.YES, Claim.NO, Claim.AGREE))
 
 
@@ -56,6 +57,8 @@ class Said:
     """True when it ends with a request for time."""
     strange: list[str] = field(default_factory=list)
     """Unknown words."""
+    is_clean: bool = False
+    """True when a part of its own says something of the world without an unknown word: the rest explains it."""
     breaks_after_plain: bool = False
     """True when a Yes or No is a part of its own: what is said besides explains it."""
 
@@ -157,6 +160,7 @@ class Scan:
             self._settle_bare(part)
         if part.negated:
             self.claim(Claim.NO)
+        self.said.is_clean |= bool(part.claims & _WORLD) and not (part.strange or part.doubted)
         if part.doubted:
             self.any_doubt = True
             self._doubt_alone |= not part.claims

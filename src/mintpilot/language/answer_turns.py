@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
+ECHO = re.compile(r"^(?:\w+ ){1,2}\? (?=\w)")
+"""The question's word thrown back, before the answer: ``safe? it is burning``."""
 CORRECTION = re.compile(
     r"\b(?:actually|no wait|wait no(?= \w)|(?<!what )i mean(?! it\b)|i meant|sorry|correction|scratch that|strike that"
     r"|cancel that|belay that"
@@ -32,8 +34,8 @@ NOT_ASKED = re.compile(
     r"|\bare you (?:crazy|mad|insane|nuts|kidding|serious|out of your mind)\b|\bhave you lost your mind\b|\bwhat the\b"
 )
 _STATEMENT = re.compile(
-    r"[ ,.;]*(?:(?:now|then|actually|well|not) )*(?:it|that|this|there|these|they|he|she|we|i|you|somebody|someone|everybody"
-    r"|everyone|all of them|the|a|an|one)\b"
+    r"[ ,.;]*(?:(?:now|then|actually|well|not) )*(?:it|that|this|there|these|they|he|she|(?P<own>we|i)|you"
+    r"|(?:some|every)(?:body|one)|all of them|the|a|an|one)\b"
 )
 """How something new begins that is said of the world: no mere ``but toxic``, ``but only if``."""
 _WAS = re.compile(r"\b(?:was|were|used to|had been|had)\b")
@@ -55,9 +57,10 @@ def turn(words: str) -> Turn | None:
     before, but, after = words.rpartition(" but ")
     if not but:
         before, but, after = words.rpartition(" , now ")
-    if not before.strip(" ,.;") or _STATEMENT.match(after) is None:
+    found, is_past = _STATEMENT.match(after), _WAS.search(before) is not None
+    if not before.strip(" ,.;") or found is None or (found["own"] and not is_past):
         return None
-    return Turn(after, _WAS.search(before) is not None, "now" in (*but.split(), *after.split()))
+    return Turn(after, is_past, "now" in (*but.split(), *after.split()))
 
 
 def corrected(words: str) -> str:

@@ -21,7 +21,8 @@ ATTITUDES: dict[Kind, str] = {
         damn straight|too right|yes indeed|that is affirmative|positive|fine by me|fine with me|works for me|
         good by me|good with me|ok by me|ok with me|that works|sounds good|sounds good to me|sounds fine|looks good|
         looks good to me|looks fine|looks fine to me|very well|that is fine|that is good|that is ok|no complaints|
-        it is|it does|i do|that is
+        it is|it does|i do|that is|bang on|dead on|dead right|mm hmm|could not be any other|could not be any other one|
+        can not be any other|can not be any other one|the very one|the very same|that is what i said
     """,
     Kind.BOOST: """
         absolutely|definitely|certainly|surely|sure|sure thing|for sure|of course|totally|completely|indeed|obviously|
@@ -45,7 +46,7 @@ ATTITUDES: dict[Kind, str] = {
         no siree|fat chance|over my dead body|do not do it|please do not|do not do that|do not you dare|
         do not even think about it|not recommended|not advisable|not advised|inadvisable|not worth it|
         not worth the risk|not a good idea|not such a good idea|veto|i refuse|refused|abstain from it|hard no|
-        no no no|not happening
+        no no no|not happening|yeah no|god no|dear god no|heavens no|would not send
     """,
     Kind.AGREE: """
         go ahead|go quickly|go slowly|go carefully|go gently|go fast|go for it|go on|go right ahead|proceed|do it|
@@ -68,7 +69,7 @@ ATTITUDES: dict[Kind, str] = {
         know|knows|tell|a clue|a clue about it|check|check it|check that|search|searched|searched it|look|say|
         remember|recall|see|hear|judge|understand|certain|see it|see that|see anything|tell you|seen|looked|been|
         checked|heard|decide|make out|make it out|guess|be sure|be certain|figure out|work out|verify|convinced|
-        follow|catch that|catch|get that|on site|near there|the expert|an expert|informed|aware|confident|answer|
+        follow|catch that|catch|get that|on site|near there|the expert|an expert|informed|aware|confident|answer|saw|saw it|
         answer that|comment|positive about it|of knowing|of telling|to know|to tell|see a thing
     """,
     Kind.THINK: """
@@ -120,7 +121,7 @@ ATTITUDES: dict[Kind, str] = {
         there is no telling|never mind|nevermind|blind here|lost track|confusing|confused|i am confused|
         missing information|negotiable|not necessarily|not that i know|not that i know of|not that i am aware|
         not to my knowledge|not as far as i know|not sure|not so sure|not certain|not clear to me|
-        under the impression|inconclusive|stumped|clueless|wonder|pardon|huh|eh|come again|say again|say that again|
+        only just|just about|just fit|just barely|under the impression|inconclusive|stumped|clueless|wonder|pardon|huh|eh|come again|say again|say that again|
         say it again|say it once more|repeat|repeat that|please repeat|repeat the question|what was that|which one|
         did not catch that|once more|again please|one more time|excuse me|i beg your pardon|beg your pardon|speak up|
         louder|breaking up|you are breaking up|say what|sorry what|slow down|rephrase|in other words|i am lost|
@@ -163,7 +164,7 @@ ATTITUDES: dict[Kind, str] = {
         in your dreams|dream on|pigs|pigs fly|death wish|genius|einstein|sherlock|brilliant|fantastic idea|great idea|
         wonderful idea|lovely idea|what could go wrong|what could possibly go wrong|good luck|good luck with that|
         say goodbye|kidding|just kidding|joking|just joking|joke|funny|very funny|haha|ha ha|hahaha|lol|lmao|rofl|
-        lmfao|yeah no|lose|lose another|sure jan|bonfire|barbecue|barbeque|bbq|roast|roasted|grill|kamikaze|hero|
+        lmfao|lose|lose another|sure jan|bonfire|barbecue|barbeque|bbq|roast|roasted|grill|kamikaze|hero|
         my ass|my arse|said no one ever|said nobody ever|clear as mud|safe as houses|dandy|what a surprise|whoopee|
         because that always works|like a hole|famous last words|psych|sike|ironic|sarcasm|yeah nah|nah yeah|oh great|
         oh wonderful|oh perfect|oh brilliant|oh fantastic|just great|just perfect|just wonderful|just what we need|
@@ -175,7 +176,7 @@ ATTITUDES: dict[Kind, str] = {
         the smoke|the way|the path|the area|the room|the door|smoke|cloud|room|door|area|path|passage|route|gate|
         corridor|hallway|doorway|place|air|stuff|thing
     """,
-    Kind.PRONOUN: "i|we|he|she|they|who|my|our|his",
+    Kind.PRONOUN: "i|we|he|she|they|who|my|our|his|firemen|firefighters|fireman|caretaker|janitor|foreman|crew",
     Kind.VERB: """
         is|are|was|were|has|have|had|does|did|do|can|will|would|should|be|been|being|am|may|must|shall|got|has got
     """,
@@ -195,7 +196,10 @@ ATTITUDES: dict[Kind, str] = {
         fire chief|fire brigade|fire department|fire service|fire officer|fire truck|fire marshal|fire alarm|
         fire door|fire exit|fire escape|fire extinguisher|fire crew|fire team|the fire team|fire is under control|
         put out|extinguished|no need|which|worry|do not worry|not to worry|not worry|hello|hi|ok so|such|at least|in|
-        night|ma|watch|closer|nearer|near|right behind|right there|right here|right next to|right in front of
+        night|ma|watch|closer|nearer|near|right behind|right there|right here|right next to|right in front of|
+        and no other|something awful|something terrible|something rotten|propped|wedged|kicked|forced|took|taken|easy|easily|
+        ya|myself|meself|ourselves|yourself|whole|gap|big hole|huge hole|large hole|gaping hole|just a hole|standing|
+        sitting|waiting|right across|fallen|right now|love|dear|darling|chief|boss|guv
     """,
 }
 """Class → phrases."""

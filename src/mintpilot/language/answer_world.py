@@ -19,6 +19,13 @@ PRODUCTS: tuple[tuple[Kind, str, str], ...] = (
         _OFF,
         "away|off|out|clear of|well clear|clear|back|outside|out of it|out of there|away from it|well away",
     ),
+    (Kind.THROUGH, "loads of|lots of|tons of|bags of|ample|heaps of|more than enough", "room|space"),
+    (Kind.DANGER, "nothing|nobody|no one|noone", "gets through|gets past|can get through|fits through|comes through"),
+    (
+        Kind.AGREE,
+        "yeah|yes|yep|yup|sure|ok|aye",
+        "no problem|no problem at all|no problems|no worries|no bother|no issue",
+    ),
     (Kind.AROUND, "find|take|use|choose|pick|try|look for|there is", "another way|another route|a different route"),
 )
 """Class, first parts and second parts of phrases: ``go through``, ``stay out``."""
@@ -28,7 +35,7 @@ STATES: dict[Kind, str] = {
         fly on|pass|straight through|go straight|straight ahead|enter|enter it|go over|you can enter|you may enter|
         take the direct way|take the direct route|take the short way|take that route|take that way|use that route|
         through it is|plenty of room|plenty of space|enough room|enough space|room to pass|make it through|
-        fit through|fly through
+        fit through|fly through|right through|clean through|will fit|fits|fit|room to spare
     """,
     Kind.AROUND: """
         other way|another way|a different way|a different route|another route|alternative route|long way|
@@ -40,7 +47,8 @@ STATES: dict[Kind, str] = {
     """,
     Kind.SAFE: """
         safe|safely|passable|harmless|flyable|navigable|breathable|traversable|secure|unlocked|unblocked|unobstructed|
-        ajar|wide open|open|open wide|allowed|permitted|authorised|authorized|accessible|risk free|survivable|
+        ajar|wide open|open|fully open|completely open|all the way open|right open|off its hinges|off the hinges|
+        no door there any more|no door there anymore|no door any more|no door anymore|open wide|allowed|permitted|authorised|authorized|accessible|risk free|survivable|
         nothing to worry about|nothing to fear|nothing dangerous|nothing toxic|nothing harmful|nothing bad|
         nothing hazardous|nothing wrong|nothing in the way|nothing in your way|non toxic|nontoxic|non hazardous|clean|
         worth|manageable|thin enough|wise|smart|sensible|advisable|recommended|a good idea|good idea|penetrable|
@@ -65,7 +73,10 @@ STATES: dict[Kind, str] = {
         perilous|volatile|leak|leaking|leaks|full of smoke|smouldering|smoldering|ruin|fry|fries|toast|lose the drone|
         lose it|never make it|would not make it|will not make it|not make it|stinks|smells|smell|reeks|warning|alarm|
         evil|worse|worst|impossible|no passage|dead end|no through road|no way through|smoky|stuck|blocking|blocks|
-        hazmat
+        hazmat|bricked up|bricked|boarded up|nailed shut|walled up|padlocked|chained|chained up|slammed|slammed shut|lock|
+        locks|glass|pane|smash|smashed|beam|beams|girder|girders|fallen across|fallen in|in the way|in your way|
+        hundred degrees|thousand degrees|in hospital|to hospital|in the morgue|suffocated|electrocuted|blown up|
+        centimetre|centimetres|centimeter|centimeters|cm|inch|inches|millimetres|a crack|a slit|a chink|not fit
     """,
     Kind.HAZARD: """
         danger|dangers|risk|risks|hazard|hazards|threat|threats|problem|problems|issue|issues|obstacle|obstacles|
@@ -87,6 +98,7 @@ STATES: dict[Kind, str] = {
         victims|survivor|survivors|casualty|casualties|husband|wife|son|daughter|brother|sister|mother|father|mum|mom|
         dad|uncle|aunt|neighbour|neighbor|neighbours|employee|employees|resident|residents|tenant|tenants|occupant|
         occupants|soul|body|bodies|human|humans|visitor|visitors|others|grandmother|grandfather|grandma|grandpa|
+        mr|mrs|miss|lad|lads|old man|old lady|gran|granny|nan|grandad|granddad|guest|guests|
         teenager|toddler|bloke|watchman|night watchman|team|squad
     """,
     Kind.ONE: "he|she|they|him|her|them",
@@ -115,6 +127,7 @@ STATES: dict[Kind, str] = {
         escaped|escape|evacuated|evacuate|evacuating|rescued|gone|went home|gone home|left already|already left|
         left the building|left the room|left hours ago|have left|has left|had left|leave|leaving|leaves|exit|exited|
         exiting|run out|get away|got away|have all left|walked out|ran out|ran away|accounted for|out of there|
+        out here|in the car park|in the yard|in the street|across the road|out front|in the ambulance|
         moved out|climbed out|elsewhere|somewhere else|with me|with us|safe outside|at the assembly point|brought out|
         pulled out|carried out|cleared out|off site|offsite|go out|left yesterday
     """,
@@ -132,6 +145,10 @@ STATES: dict[Kind, str] = {
     """,
     Kind.OCCUPIED: """
         occupied|inhabited|crowded|full of people|not empty|manned|populated|full of kids|full of workers
+    """,
+    Kind.THING: """
+        dummy|dummies|mannequin|mannequins|doll|dolls|boxes|crates|furniture|shelves|junk|rat|rats|mice|mouse|
+        pigeon|pigeons|machine|machines|tools|storage|equipment|supplies|paint|files|desks|chairs|brooms
     """,
     Kind.TRACE: """
         voice|voices|scream|screams|screaming|screamed|shout|shouts|shouting|shouted|yell|yells|yelling|yelled|cry|

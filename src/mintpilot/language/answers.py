@@ -18,7 +18,7 @@ from mintpilot.core.query import Combine, Command, Literal, Question, Reply
 from mintpilot.language.answer_claims import read_claims
 from mintpilot.language.answer_lexing import atoms, plain
 from mintpilot.language.answer_scope import Claim, Said
-from mintpilot.language.answer_turns import GENTLE, NO_SPEECH, PLAIN_NO, asks_back, corrected, turn
+from mintpilot.language.answer_turns import ECHO, GENTLE, NO_SPEECH, PLAIN_NO, asks_back, corrected, turn
 from mintpilot.language.orders import order_in
 from mintpilot.language.referring import Mention, mention, said_relation
 from mintpilot.language.slips import may_hide_caution
@@ -39,9 +39,12 @@ _MOST_STRANGE = {
     "no": 9,
     "derived yes": 0,
     "benign": 2,
+    "benign, explained": 4,
     "derived no": 3,
     "derived": 2,
     "absent": 1,
+    "absent, explained": 3,
+    "derived, explained": 5,
 }
 """How many unknown words an answer may have. None where a way is called free: it may be about something else."""
 
@@ -95,15 +98,18 @@ def understand_answer(text: str, question: Question) -> Understood:
 
 
 def _turned(words: str, question: Question) -> Understood | None:
-    """What is said after a ``but`` where it outweighs what stands before; None otherwise.
+    """What is said after a ``but``, or after a word thrown back, where it outweighs that; None otherwise.
 
     A danger, or another thing than the one asked about, does; of rooms and ways, how it is now against how it was.
     """
-    found = turn(words)
+    about, echo, found = _topic(question), ECHO.match(words), turn(words)
+    no_counts = about is not GapKind.OBSTACLE or _no_is_careful(question)
+    if echo is not None and no_counts and (answer := _read(words[echo.end() :], question)).reading is Reading.NO:
+        return answer
     if found is None:
         return None
-    after, about = _read(found.after, question), _topic(question)
-    if after.reading is Reading.NO and (about is not GapKind.OBSTACLE or _no_is_careful(question)):
+    after = _read(found.after, question)
+    if after.reading is Reading.NO and no_counts:
         return after if found.is_past or about is not GapKind.PRESENCE else None
     outweighs = found.is_past and (about is GapKind.PRESENCE or found.is_now)
     return after if after.reading is Reading.YES and outweighs else None
@@ -158,10 +164,14 @@ def _weighed(readings: set[Reading], said: Said, said_of: Mention, words: str, q
         return Reading.UNSURE
     if not readings and said.is_hedged:
         return Reading.UNSURE
+    if said.is_mockery and careful and said.claims >= {Claim.PASSABLE, Claim.BLOCKED} and not said.plain:
+        return Reading.NO if _no_is_careful(question) else Reading.OTHER
     if len(readings) != 1 or said_of.confused or Claim.UNCLEAR in said.claims:
         return Reading.OTHER
     (reading,) = readings
-    if (said.is_condition or said.is_mockery) and (reading is not careful or not _is_refusal(said)):
+    if (said.is_condition and reading is not careful) or (
+        (said.is_condition or said.is_mockery) and not _is_refusal(said)
+    ):
         return Reading.OTHER
     if asks_back(words) and (reading is not careful or not PLAIN_NO.search(words)):
         return Reading.OTHER
@@ -195,13 +205,17 @@ def _is_refusal(said: Said) -> bool:
 def _basis(reading: Reading, said: Said, question: Question) -> str:
     """What the reading rests on."""
     if _topic(question) is GapKind.OBSTACLE and Claim.PASSABLE in said.claims and not said.claims & {Claim.YES}:
-        return "benign" if said.is_benign else "derived yes"
+        return "derived yes" if not said.is_benign else "benign, explained" if said.is_clean else "benign"
     if reading is Reading.YES and said.claims == {Claim.BOOST}:
         return "derived yes"
     if reading is Reading.YES:
         explained = said.breaks_after_plain or _topic(question) is not GapKind.OBSTACLE
-        return "derived" if Claim.YES not in said.claims else "yes, explained" if explained else "yes"
-    return "no" if Claim.NO in said.claims else "absent" if Claim.ABSENT in said.claims else "derived no"
+        if Claim.YES in said.claims:
+            return "yes, explained" if explained else "yes"
+        return "derived, explained" if Claim.PRESENT in said.claims and said.is_clean else "derived"
+    if Claim.NO in said.claims or Claim.ABSENT not in said.claims:
+        return "no" if Claim.NO in said.claims else "derived no"
+    return "absent, explained" if said.is_clean else "absent"
 
 
 def _by_values(claims: set[Claim], words: str, question: Question) -> set[Reading]:

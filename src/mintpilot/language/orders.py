@@ -13,7 +13,8 @@ _OF_OTHERS = re.compile(r"\b(?:i|we|they|he|she|who|everyone|everybody|people|no
 """Where people come back it is no order: ``I will come back to you``."""
 _NO_LANDING = re.compile(
     r"\b(?:i|we|they|he|she|who|(?:every|some|any)(?:one|body)|people|nobody)(?: (?!said\b|say\b)\w+)?\s*$"
-    r"|\b(?:(?<!you )to|can|could|may|might|the|a|this|that|my|our|of|no|dry|open|flat|waste|is|are|was|were|been|it)\s*$|\bin(?: \w+)?\s*$"
+    r"|\b(?:(?<!you )to|can|could|may|might|the|a|this|that|my|our|of|no|dry|open|flat|waste|is|are|was|were|been|it)\s*$"
+    r"|\bin(?: \w+)?\s*$"
 )
 """``I put it down there``, ``room to land``, ``on dry land``."""
 _NO_STOP = re.compile(r"\b(?:bus|full|non|pit) $")
@@ -29,8 +30,8 @@ _ORDERS: tuple[tuple[re.Pattern[str], Command, re.Pattern[str]], ...] = tuple(
         (
             rf"\b(?:put|set|bring|take) {_ITSELF} down\b|\b(?:put|set|touch) down\b(?! {_ITSELF}\b)"
             rf"|\b(?:cut|kill|stop|shut off|shut down|turn off|switch off) {_MOTORS}\b"
-            rf"|\bland(?= {_ITSELF}\b| (?:now|right|immediately|at once|please|straight|safely|there|here|where|on|by)\b"
-            r"| *$| *[,.;!])",
+            rf"|\bland(?= {_ITSELF}\b| *$| *[,.;!]"
+            r"| (?:now|right|immediately|at once|please|straight|safely|there|here|where|on|by)\b)",
             Command.ABORT,
             _NO_LANDING,
         ),

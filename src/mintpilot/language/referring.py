@@ -32,10 +32,12 @@ _NOT = re.compile(
     r"\b(?:not|never|nor|neither|except|without|none of|any\w* but|all but|other than|instead of|used to be)\b"
     r"(?: (?:the|a|an|that|this|any|of|those|these|one(?= of)))*$"
 )
+_SIMILE = re.compile(rf"\b{_SUCH} as (?:a|an|the) \w+(?: \w+)?(?= *$| *[,.;!])")
+"""``red as a fire engine``."""
 _COLOURS = frozenset(word for word, (name, _) in ADJECTIVES.items() if name == "colour")
 _BESIDE = re.compile(
-    r"\b(?:the|that) \w+ (?:right |just )?(?:behind|beside|next to|under|above|below|in front of|opposite|(?:to the )?left of"
-    r"|(?:to the )?right of|across from) (?:it|that one|this one|that|this)(?= *$| *[,.;!])"
+    r"\b(?:the|that) \w+ (?:right |just )?(?:behind|beside|next to|under|above|below|in front of|opposite"
+    r"|(?:to the )?left of|(?:to the )?right of|across from) (?:it|that one|this one|that|this)(?= *$| *[,.;!])"
 )
 """Another thing than the one asked about, told by where it is: ``the one behind it``."""
 
@@ -84,12 +86,13 @@ def mention(words: str, gaps: Sequence[KnowledgeGap]) -> Mention:
             rest.append(_SUCH)
             named &= run
             runs_named.append(run)
+    words_left = _SIMILE.sub(_SUCH, " ".join(rest))
     values = named - ruled_out if runs_named or ruled_out else set()
     another = bool(runs_named) and not any(runs_named)
     confused = not values and not another and bool(runs_named or ruled_out)
     if _BESIDE.search(words) is not None:
         values, confused, another = set(), False, True
-    return Mention(gap=gap, values=frozenset(values), rest=" ".join(rest), confused=confused, another=another)
+    return Mention(gap=gap, values=frozenset(values), rest=words_left, confused=confused, another=another)
 
 
 def said_relation(words: str, question: Question) -> bool | None:
