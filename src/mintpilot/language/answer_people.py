@@ -17,6 +17,7 @@ def _person(scan: Scan, _: Atom) -> None:
         if part.perceived:
             scan.claim(Claim.UNSURE)
         return
+    part.strange += part.tells
     part.subject = part.bare = Kind.PERSON
     if part.exists or part.perceived:
         scan.claim(Claim.PRESENT)
@@ -116,6 +117,10 @@ def _exist(scan: Scan, _: Atom) -> None:
     scan.part.exists = True
 
 
+def _verb(scan: Scan, _: Atom) -> None:
+    scan.part.tells = scan.part.bare is Kind.PERSON
+
+
 def _thing(scan: Scan, atom: Atom) -> None:
     """``only a dummy``: nobody; by itself a thing says nothing of people."""
     if scan.part.minimised and not scan.part.negated:
@@ -135,7 +140,7 @@ PEOPLE: dict[Kind, Callable[[Scan, Atom], None]] = {
     _nobody, Kind.SOME: _some, Kind.INSIDE: _inside, Kind.TRAPPED: _trapped, Kind.OUT: _out, Kind.LEFT: _left,
     Kind.TRACE: _trace, Kind.PERCEIVE: _perceive, Kind.EXIST: _exist,
     Kind.EMPTY: lambda scan, _: scan.claim(Claim.PRESENT if scan.part.negated else Claim.ABSENT),
-    Kind.THING: _thing,
+    Kind.THING: _thing, Kind.VERB: _verb,
     Kind.OCCUPIED: _occupied,
 }  # fmt: skip
 """Class → what it does."""

@@ -81,6 +81,8 @@ class Part:
     subject: Kind | None = None
     bare: Kind | None = None
     """People of whom nothing was said yet."""
+    tells: bool = False
+    """True when a verb says something of the people just named: ``my brother is …``."""
     passes_over: bool = False
     denied: bool = False
     """True once a negation was said in it."""

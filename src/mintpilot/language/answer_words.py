@@ -31,7 +31,7 @@ ATTITUDES: dict[Kind, str] = {
         i promise|trust me|believe me|guaranteed|genuinely|truly|quite sure|very sure|absolutely sure
     """,
     Kind.NO: """
-        nope|naw|nah|na|negative|nay|noo|nop|nada|nein|non|false|wrong|incorrect|n|uh uh|nuh uh|no way|no chance|
+        nope|naw|nah|na|negative|nay|noo|nop|nada|nein|non|false|wrong|incorrect|n|uh uh|nuh uh|no way|no chance|can not open it|can not open that|can not open the door|
         no sir|no thanks|no thank you|not a chance|not a hope|not in a million years|not on your life|not on my watch|
         never ever|not now|not today|forget that|forget that one|leave that one|skip that one|forget this one|no good|
         nix|negatory|of course not|under no circumstances|by no means|hell no|heck no|no no|neither|neither one|
@@ -98,6 +98,7 @@ ATTITUDES: dict[Kind, str] = {
     """,
     Kind.VERY: "very|really|extremely|highly|super|so very|incredibly|terribly|damn|bloody|way|far|much|properly",
     Kind.UNSURE: """
+        open it|open that|open the door|open them|
         how would i know|how should i know|who am i to say|how am i supposed to know|the faintest|foggiest|
         do not get it|did not get it|do not get that|did not get that|do not understand|am not there|am not here|
         was not there|are not there|were not there|am not near|am not in|am not at|not on site|not at the site|
@@ -168,7 +169,8 @@ ATTITUDES: dict[Kind, str] = {
         my ass|my arse|said no one ever|said nobody ever|clear as mud|safe as houses|dandy|what a surprise|whoopee|
         because that always works|like a hole|famous last words|psych|sike|ironic|sarcasm|yeah nah|nah yeah|oh great|
         oh wonderful|oh perfect|oh brilliant|oh fantastic|just great|just perfect|just wonderful|just what we need|
-        burn the drone|fried|crispy|cremate|cremated|funeral|coffin|insurance|warranty|picnic
+        burn the drone|queen|king|pope|santa|father christmas|easter bunny|tooth fairy|napoleon|superman|
+        fried|crispy|cremate|cremated|funeral|coffin|insurance|warranty|picnic
     """,
     Kind.DENIED: "nosuch",
     Kind.SUBJECT: "it|that|this|there|you|one|ones|these|those",

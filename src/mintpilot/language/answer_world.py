@@ -19,6 +19,12 @@ PRODUCTS: tuple[tuple[Kind, str, str], ...] = (
         _OFF,
         "away|off|out|clear of|well clear|clear|back|outside|out of it|out of there|away from it|well away",
     ),
+    (
+        Kind.UNSURE,
+        "open|wide|safe|clear|free|wide enough|open enough|safe enough",
+        "a bit|a little|slightly|partly|half|halfway|up to|only|for a|for now|for people|for us",
+    ),
+    (Kind.UNSURE, "open|wide", "about|by"),
     (Kind.THROUGH, "loads of|lots of|tons of|bags of|ample|heaps of|more than enough", "room|space"),
     (Kind.DANGER, "nothing|nobody|no one|noone", "gets through|gets past|can get through|fits through|comes through"),
     (
@@ -73,7 +79,7 @@ STATES: dict[Kind, str] = {
         perilous|volatile|leak|leaking|leaks|full of smoke|smouldering|smoldering|ruin|fry|fries|toast|lose the drone|
         lose it|never make it|would not make it|will not make it|not make it|stinks|smells|smell|reeks|warning|alarm|
         evil|worse|worst|impossible|no passage|dead end|no through road|no way through|smoky|stuck|blocking|blocks|
-        hazmat|bricked up|bricked|boarded up|nailed shut|walled up|padlocked|chained|chained up|slammed|slammed shut|lock|
+        hazmat|passed out|bricked up|bricked|boarded up|nailed shut|walled up|padlocked|chained|chained up|slammed|slammed shut|lock|
         locks|glass|pane|smash|smashed|beam|beams|girder|girders|fallen across|fallen in|in the way|in your way|
         hundred degrees|thousand degrees|in hospital|to hospital|in the morgue|suffocated|electrocuted|blown up|
         centimetre|centimetres|centimeter|centimeters|cm|inch|inches|millimetres|a crack|a slit|a chink|not fit
@@ -103,6 +109,7 @@ STATES: dict[Kind, str] = {
     """,
     Kind.ONE: "he|she|they|him|her|them",
     Kind.EVERYBODY: """
+        all my people|all my men|all my staff|all my colleagues|all my workers|all the others|
         everybody|everyone|they all|all of them|all of us|we all|all the people|every last one|every single one|
         every one|all the workers|all the staff|all the kids|all staff|all personnel|the whole team|the lot of them|
         all people|them all|they are all|they have all|they were all|all the children|all hands|we are all|
@@ -127,7 +134,7 @@ STATES: dict[Kind, str] = {
         escaped|escape|evacuated|evacuate|evacuating|rescued|gone|went home|gone home|left already|already left|
         left the building|left the room|left hours ago|have left|has left|had left|leave|leaving|leaves|exit|exited|
         exiting|run out|get away|got away|have all left|walked out|ran out|ran away|accounted for|out of there|
-        out here|in the car park|in the yard|in the street|across the road|out front|in the ambulance|
+        out here|in the car park|in the yard|in the street|across the road|out front|with the ambulance|with the medics|with the medic|with the doctor|in the ambulance|
         moved out|climbed out|elsewhere|somewhere else|with me|with us|safe outside|at the assembly point|brought out|
         pulled out|carried out|cleared out|off site|offsite|go out|left yesterday
     """,
@@ -148,7 +155,8 @@ STATES: dict[Kind, str] = {
     """,
     Kind.THING: """
         dummy|dummies|mannequin|mannequins|doll|dolls|boxes|crates|furniture|shelves|junk|rat|rats|mice|mouse|
-        pigeon|pigeons|machine|machines|tools|storage|equipment|supplies|paint|files|desks|chairs|brooms
+        pigeon|pigeons|machine|machines|tools|storage|equipment|supplies|paint|files|desks|chairs|brooms|
+        storeroom|store room|cupboard|broom cupboard|closet|broom closet
     """,
     Kind.TRACE: """
         voice|voices|scream|screams|screaming|screamed|shout|shouts|shouting|shouted|yell|yells|yelling|yelled|cry|

@@ -32,6 +32,20 @@ _NOT = re.compile(
     r"\b(?:not|never|nor|neither|except|without|none of|any\w* but|all but|other than|instead of|used to be)\b"
     r"(?: (?:the|a|an|that|this|any|of|those|these|one(?= of)))*$"
 )
+_SHADES = frozenset(("light", "dark", "bright", "pale", "deep"))
+_OF_ANOTHER = re.compile(
+    r"\b(?:(?:next to|behind|beside|near|by|under|on|from|inside|with|wearing|opposite|left of|right of|in(?= \w))(?: (?:the|a|an|my|its))?"
+    r"|all(?: \w+){0,2}|\w+ish"
+    r"|(?!(?:it|that|this|one|ones|they|those|these|which|there|mine|thing|colou?r|want|mean|meant|need|said|such|not|yes|yeah)\b)"
+    r"\w+ (?:is|are|was|were)(?: all)?)$"
+)
+"""What before a colour makes it one of something else: ``next to the red …``, ``my jacket is …``."""
+_FOLLOWERS = frozenset(
+    "one ones thing please yes yeah no not nor and or but with by near next on in at that which who as mate now then i we you it"
+    " is are was over under behind beside to from for sir thanks there here if though of course sure obviously definitely"
+    " have has both too also together either colour color such nosuch".split()
+)
+"""What may follow the words for a thing that is asked about; after another noun they describe that."""
 _SIMILE = re.compile(rf"\b{_SUCH} as (?:a|an|the) \w+(?: \w+)?(?= *$| *[,.;!])")
 """``red as a fire engine``."""
 _COLOURS = frozenset(word for word, (name, _) in ADJECTIVES.items() if name == "colour")
@@ -75,9 +89,12 @@ def mention(words: str, gaps: Sequence[KnowledgeGap]) -> Mention:
         return Mention(gap=None, values=frozenset(), rest=words)
     (gap,) = targets
     named, ruled_out, rest = set(gap.values), set[str](), list[str]()
-    runs_named: list[set[str]] = []
+    runs_named, elsewhere = list[set[str]](), list[set[str]]()
     for run in _runs(words, gap):
-        if isinstance(run, str):
+        if isinstance(run, tuple):
+            elsewhere.append(run[0])
+            rest.extend(run[1])
+        elif isinstance(run, str):
             rest.append(run)
         elif (denied := _NOT.search(before := " ".join(rest))) is not None:
             ruled_out |= run
@@ -90,6 +107,7 @@ def mention(words: str, gaps: Sequence[KnowledgeGap]) -> Mention:
     values = named - ruled_out if runs_named or ruled_out else set()
     another = bool(runs_named) and not any(runs_named)
     confused = not values and not another and bool(runs_named or ruled_out)
+    confused |= any(not values <= fits for fits in elsewhere)
     if _BESIDE.search(words) is not None:
         values, confused, another = set(), False, True
     return Mention(gap=gap, values=frozenset(values), rest=words_left, confused=confused, another=another)
@@ -120,21 +138,38 @@ def _says(words: str, names: frozenset[str]) -> set[bool]:
     return {_NOT.search(words[: found.start()].rstrip()) is None for found in re.finditer(pattern, words)}
 
 
-def _runs(words: str, gap: KnowledgeGap) -> Iterator[str | set[str]]:
-    """Words that say nothing of the candidates, and for each run of others (``small red``) those that fit all of it."""
-    run: set[str] | None = None
-    for token in re.finditer(r"[\w']+|[,.;!?]", words):
-        fits = {c.id for c in gap.candidates if _ALIKE.get(token[0], token[0]) in _words_of(c)}
-        is_known = 0 < len(fits) < len(gap.candidates)
-        if is_known or (not fits and token[0] in _COLOURS):
-            run = fits if run is None else run & fits
-            continue
-        if run is not None:
-            yield run
-        run = None
-        yield token[0]
-    if run is not None:
-        yield run
+def _runs(words: str, gap: KnowledgeGap) -> Iterator[str | set[str] | tuple[set[str], list[str]]]:
+    """Words that say nothing of the candidates, and for each run of others (``small red``) those that fit all of it.
+
+    A run that may be about something else (``the red door is open``) comes as a tuple of both.
+    """
+    tokens, at = re.findall(r"[\w']+|[,.;!?]", words), 0
+    nouns = {form for c in gap.candidates for w in _words_of(c) for form in (w, f"{w}s", f"{w}es")}
+    while at < len(tokens):
+        end, fits = at, set(gap.values)
+        while end < len(tokens) and (named := _named(tokens, end, gap)) is not None:
+            end, fits = end + 1, fits & named
+        following = tokens[end] if end < len(tokens) else ","
+        is_named = following in _FOLLOWERS | nouns or not following.isalpha()
+        if end > at and is_named and _OF_ANOTHER.search(" ".join(tokens[:at])) is None:
+            yield fits
+        else:
+            if end > at:
+                yield fits, tokens[at:end]
+            else:
+                yield tokens[at]
+            end = max(end, at + 1)
+        at = end
+
+
+def _named(tokens: Sequence[str], at: int, gap: KnowledgeGap) -> set[str] | None:
+    """The candidates that a word fits; None where it says nothing of them. ``light`` and ``dark`` go with a colour."""
+    token = tokens[at]
+    if token in _SHADES and at + 1 < len(tokens) and tokens[at + 1] in _COLOURS:
+        return set(gap.values)
+    fits = {c.id for c in gap.candidates if _ALIKE.get(token, token) in _words_of(c)}
+    is_telling = len(fits) < len(gap.candidates) and (bool(fits) or token in _COLOURS)
+    return fits if is_telling else None
 
 
 def _words_of(candidate: Candidate) -> frozenset[str]:
