@@ -37,7 +37,8 @@ _OPEN = (
     (r"(?<!is)(?<!re)(?<!be)(?<!yeah)(?<!yes)(?<!oh)(?<!looks)(?<!seems)(?<!it)(?<!all)(?<!the)(?<!on)(?<!to)"
      r"(?<=\w) (?:ok|okay|right)$", ""),
     (r"\bcan ?n[o']t\b|\bcant\b|\bcannot\b|\bcan't\b", "can not"), (r"\bwon'?t\b", "will not"),
-    (r"\bcould not (?=(?:get|find|reach|leave|make it)\b)", "can not "), (r"\bshan'?t\b", "shall not"), (r"\bain'?t\b", "is not"), (r"\b(\w+)n't\b", r"\1 not"),
+    (r"\bcould not (?=(?:get|find|reach|leave|make it)\b)", "can not "),
+    (r"\bshan'?t\b", "shall not"), (r"\bain'?t\b", "is not"), (r"\b(\w+)n't\b", r"\1 not"),
     (r"\b(do|does|did|is|are|was|were|has|have|had|would|could|should|must|need)nt\b", r"\1 not"),
     (r"\b(isn|don|doesn|didn|wasn|wouldn|shouldn|couldn) t\b", r"\1't"), (r"\b(\w+)n't\b", r"\1 not"),
     (r"\blet'?s\b", "let us"), (r"\b(\w+)'s\b", r"\1 is"), (r"\b(\w+)'m\b", r"\1 am"), (r"\b(\w+)'re\b", r"\1 are"),

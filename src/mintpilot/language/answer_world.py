@@ -40,8 +40,8 @@ STATES: dict[Kind, str] = {
     Kind.THROUGH: """
         fly on|pass|straight through|go straight|straight ahead|enter|enter it|go over|you can enter|you may enter|
         take the direct way|take the direct route|take the short way|take that route|take that way|use that route|
-        through it is|plenty of room|plenty of space|enough room|enough space|room to pass|make it through|
-        fit through|fly through|right through|clean through|will fit|fits|fit|room to spare
+        through it is|plenty of room|plenty of space|enough room|enough space|room to pass|make it through|fit through|
+        fly through|right through|clean through|will fit|fits|fit|room to spare
     """,
     Kind.AROUND: """
         other way|another way|a different way|a different route|another route|alternative route|long way|
@@ -54,11 +54,11 @@ STATES: dict[Kind, str] = {
     Kind.SAFE: """
         safe|safely|passable|harmless|flyable|navigable|breathable|traversable|secure|unlocked|unblocked|unobstructed|
         ajar|wide open|open|fully open|completely open|all the way open|right open|off its hinges|off the hinges|
-        no door there any more|no door there anymore|no door any more|no door anymore|open wide|allowed|permitted|authorised|authorized|accessible|risk free|survivable|
-        nothing to worry about|nothing to fear|nothing dangerous|nothing toxic|nothing harmful|nothing bad|
-        nothing hazardous|nothing wrong|nothing in the way|nothing in your way|non toxic|nontoxic|non hazardous|clean|
-        worth|manageable|thin enough|wise|smart|sensible|advisable|recommended|a good idea|good idea|penetrable|
-        doable
+        no door there any more|no door there anymore|no door any more|no door anymore|open wide|allowed|permitted|
+        authorised|authorized|accessible|risk free|survivable|nothing to worry about|nothing to fear|nothing dangerous|
+        nothing toxic|nothing harmful|nothing bad|nothing hazardous|nothing wrong|nothing in the way|
+        nothing in your way|non toxic|nontoxic|non hazardous|clean|worth|manageable|thin enough|wise|smart|sensible|
+        advisable|recommended|a good idea|good idea|penetrable|doable
     """,
     Kind.DANGER: """
         coming down|falling down|fell in|caved|power lines|biohazard|dangeros|toxik|toxick|dangerus|unsafe|dangerous|
@@ -79,10 +79,11 @@ STATES: dict[Kind, str] = {
         perilous|volatile|leak|leaking|leaks|full of smoke|smouldering|smoldering|ruin|fry|fries|toast|lose the drone|
         lose it|never make it|would not make it|will not make it|not make it|stinks|smells|smell|reeks|warning|alarm|
         evil|worse|worst|impossible|no passage|dead end|no through road|no way through|smoky|stuck|blocking|blocks|
-        hazmat|passed out|bricked up|bricked|boarded up|nailed shut|walled up|padlocked|chained|chained up|slammed|slammed shut|lock|
-        locks|glass|pane|smash|smashed|beam|beams|girder|girders|fallen across|fallen in|in the way|in your way|
-        hundred degrees|thousand degrees|in hospital|to hospital|in the morgue|suffocated|electrocuted|blown up|
-        centimetre|centimetres|centimeter|centimeters|cm|inch|inches|millimetres|a crack|a slit|a chink|not fit
+        hazmat|passed out|bricked up|bricked|boarded up|nailed shut|walled up|padlocked|chained|chained up|slammed|
+        slammed shut|lock|locks|glass|pane|smash|smashed|beam|beams|girder|girders|fallen across|fallen in|in the way|
+        in your way|hundred degrees|thousand degrees|in hospital|to hospital|in the morgue|suffocated|electrocuted|
+        blown up|centimetre|centimetres|centimeter|centimeters|cm|inch|inches|millimetres|a crack|a slit|a chink|
+        not fit
     """,
     Kind.HAZARD: """
         danger|dangers|risk|risks|hazard|hazards|threat|threats|problem|problems|issue|issues|obstacle|obstacles|
@@ -103,17 +104,17 @@ STATES: dict[Kind, str] = {
         foreman|firefighter|fireman|firemen|firefighters|crew|staff|family|student|students|patient|patients|victim|
         victims|survivor|survivors|casualty|casualties|husband|wife|son|daughter|brother|sister|mother|father|mum|mom|
         dad|uncle|aunt|neighbour|neighbor|neighbours|employee|employees|resident|residents|tenant|tenants|occupant|
-        occupants|soul|body|bodies|human|humans|visitor|visitors|others|grandmother|grandfather|grandma|grandpa|
-        mr|mrs|miss|lad|lads|old man|old lady|gran|granny|nan|grandad|granddad|guest|guests|
-        teenager|toddler|bloke|watchman|night watchman|team|squad
+        occupants|soul|body|bodies|human|humans|visitor|visitors|others|grandmother|grandfather|grandma|grandpa|mr|mrs|
+        miss|lad|lads|old man|old lady|gran|granny|nan|grandad|granddad|guest|guests|teenager|toddler|bloke|watchman|
+        night watchman|team|squad
     """,
     Kind.ONE: "he|she|they|him|her|them",
     Kind.EVERYBODY: """
-        all my people|all my men|all my staff|all my colleagues|all my workers|all the others|
-        everybody|everyone|they all|all of them|all of us|we all|all the people|every last one|every single one|
-        every one|all the workers|all the staff|all the kids|all staff|all personnel|the whole team|the lot of them|
-        all people|them all|they are all|they have all|they were all|all the children|all hands|we are all|
-        the whole crew|the whole family|the whole staff|whole crew|whole team
+        all my people|all my men|all my staff|all my colleagues|all my workers|all the others|everybody|everyone|
+        they all|all of them|all of us|we all|all the people|every last one|every single one|every one|all the workers|
+        all the staff|all the kids|all staff|all personnel|the whole team|the lot of them|all people|them all|
+        they are all|they have all|they were all|all the children|all hands|we are all|the whole crew|the whole family|
+        the whole staff|whole crew|whole team
     """,
     Kind.NOBODY: """
         nobody|no one|noone|not a soul|no soul|no living soul|not one person|not a single person|no person|no people|
@@ -134,9 +135,10 @@ STATES: dict[Kind, str] = {
         escaped|escape|evacuated|evacuate|evacuating|rescued|gone|went home|gone home|left already|already left|
         left the building|left the room|left hours ago|have left|has left|had left|leave|leaving|leaves|exit|exited|
         exiting|run out|get away|got away|have all left|walked out|ran out|ran away|accounted for|out of there|
-        out here|in the car park|in the yard|in the street|across the road|out front|with the ambulance|with the medics|with the medic|with the doctor|in the ambulance|
-        moved out|climbed out|elsewhere|somewhere else|with me|with us|safe outside|at the assembly point|brought out|
-        pulled out|carried out|cleared out|off site|offsite|go out|left yesterday
+        out here|in the car park|in the yard|in the street|across the road|out front|with the ambulance|
+        with the medics|with the medic|with the doctor|in the ambulance|moved out|climbed out|elsewhere|somewhere else|
+        with me|with us|safe outside|at the assembly point|brought out|pulled out|carried out|cleared out|off site|
+        offsite|go out|left yesterday
     """,
     Kind.LEFT: "left",
     Kind.TRAPPED: """
@@ -154,9 +156,9 @@ STATES: dict[Kind, str] = {
         occupied|inhabited|crowded|full of people|not empty|manned|populated|full of kids|full of workers
     """,
     Kind.THING: """
-        dummy|dummies|mannequin|mannequins|doll|dolls|boxes|crates|furniture|shelves|junk|rat|rats|mice|mouse|
-        pigeon|pigeons|machine|machines|tools|storage|equipment|supplies|paint|files|desks|chairs|brooms|
-        storeroom|store room|cupboard|broom cupboard|closet|broom closet
+        dummy|dummies|mannequin|mannequins|doll|dolls|boxes|crates|furniture|shelves|junk|rat|rats|mice|mouse|pigeon|
+        pigeons|machine|machines|tools|storage|equipment|supplies|paint|files|desks|chairs|brooms|storeroom|store room|
+        cupboard|broom cupboard|closet|broom closet
     """,
     Kind.TRACE: """
         voice|voices|scream|screams|screaming|screamed|shout|shouts|shouting|shouted|yell|yells|yelling|yelled|cry|

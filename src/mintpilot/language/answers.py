@@ -11,17 +11,16 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
-from enum import StrEnum
 
 from mintpilot.core.gap import ABSENT, BLOCKED, PASSABLE, PRESENT, GapKind
 from mintpilot.core.query import Combine, Command, Literal, Question, Reply
 from mintpilot.language.answer_claims import read_claims
 from mintpilot.language.answer_lexing import atoms, plain
 from mintpilot.language.answer_scope import Claim, Said
-from mintpilot.language.answer_turns import ECHO, GENTLE, NO_SPEECH, PLAIN_NO, asks_back, corrected, turn
+from mintpilot.language.answer_turns import ECHO, GENTLE, NO_SPEECH, corrected, turn
+from mintpilot.language.answer_weighing import Reading, no_is_careful, topic, weighed
 from mintpilot.language.orders import order_in
 from mintpilot.language.referring import Mention, mention, said_relation
-from mintpilot.language.slips import may_hide_caution
 
 _LONGEST = 300
 _STATED = {
@@ -33,31 +32,6 @@ _STATED = {
 }
 _NONE_OF_THEM = ""
 """Stands for a thing that is no value of a target gap."""
-_MOST_STRANGE = {
-    "yes, explained": 4,
-    "yes": 1,
-    "no": 9,
-    "derived yes": 0,
-    "benign": 2,
-    "benign, explained": 4,
-    "derived no": 3,
-    "derived": 2,
-    "absent": 1,
-    "absent, explained": 3,
-    "derived, explained": 5,
-}
-"""How many unknown words an answer may have. None where a way is called free: it may be about something else."""
-
-
-class Reading(StrEnum):
-    """What an answer was taken for."""
-
-    YES = "yes"
-    NO = "no"
-    UNSURE = "unsure"
-    COMMAND = "command"
-    OTHER = "other"
-    """Not understood, contradictory, conditional, or a question: ask again."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -102,8 +76,8 @@ def _turned(words: str, question: Question) -> Understood | None:
 
     A danger, or another thing than the one asked about, does; of rooms and ways, how it is now against how it was.
     """
-    about, echo, found = _topic(question), ECHO.match(words), turn(words)
-    no_counts = about is not GapKind.OBSTACLE or _no_is_careful(question)
+    about, echo, found = topic(question), ECHO.match(words), turn(words)
+    no_counts = about is not GapKind.OBSTACLE or no_is_careful(question)
     if echo is not None and no_counts and (answer := _read(words[echo.end() :], question)).reading is Reading.NO:
         return answer
     if found is None:
@@ -117,26 +91,14 @@ def _turned(words: str, question: Question) -> Understood | None:
 
 def _read(words: str, question: Question) -> Understood:
     said_of = mention(words, question.gaps)
-    about = _topic(question)
+    about = topic(question)
     words_left = GENTLE.sub("", said_of.rest)
     known = frozenset(re.findall(r"\w+", question.text.lower()))
     said = read_claims(atoms(words_left, about, known), about)
     readings = _readings(said, said_of, words, question)
-    reading = _weighed(readings, said, said_of, words, question)
+    reading = weighed(readings, said, said_of.confused, words, question)
     also = said_of.literal() if said_of.values and reading in (Reading.YES, Reading.NO) else None
     return Understood(reading=reading, also=also)
-
-
-def _no_is_careful(question: Question) -> bool:
-    """Whether a No keeps the vehicle out of all regions asked about."""
-    return not question.query.holds(dict.fromkeys(question.query.gap_ids, BLOCKED))
-
-
-def _topic(question: Question) -> GapKind:
-    """The kind of thing asked about; where there are several, the one where most care is needed."""
-    kinds = {gap.kind for gap in question.gaps}
-    order = (GapKind.OBSTACLE, GapKind.PRESENCE, GapKind.TARGET, GapKind.VALUE)
-    return next((kind for kind in order if kind in kinds), GapKind.OBSTACLE)
 
 
 def _readings(said: Said, said_of: Mention, words: str, question: Question) -> set[Reading]:
@@ -155,67 +117,6 @@ def _readings(said: Said, said_of: Mention, words: str, question: Question) -> s
     if not found and Claim.BOOST in claims and Claim.EITHER not in claims:
         found.add(Reading.YES)
     return found
-
-
-def _weighed(readings: set[Reading], said: Said, said_of: Mention, words: str, question: Question) -> Reading:
-    """The one reading, if nothing speaks against it."""
-    careful = Reading.NO if _topic(question) is GapKind.OBSTACLE else None
-    if Claim.UNSURE in said.claims or (said.waits and (not readings or readings == {Reading.YES})):
-        return Reading.UNSURE
-    if not readings and said.is_hedged:
-        return Reading.UNSURE
-    if said.is_mockery and careful and said.claims >= {Claim.PASSABLE, Claim.BLOCKED} and not said.plain:
-        return Reading.NO if _no_is_careful(question) else Reading.OTHER
-    if len(readings) != 1 or said_of.confused or Claim.UNCLEAR in said.claims:
-        return Reading.OTHER
-    (reading,) = readings
-    if (said.is_condition and reading is not careful) or (
-        (said.is_condition or said.is_mockery) and not _is_refusal(said)
-    ):
-        return Reading.OTHER
-    if asks_back(words) and (reading is not careful or not PLAIN_NO.search(words)):
-        return Reading.OTHER
-    if Claim.EITHER in said.claims and not said.plain:
-        return Reading.OTHER
-    if said.is_hedged and reading is not careful:
-        return Reading.UNSURE
-    if (reading is not careful and _is_long_ago(said)) or _was_free(said):
-        return Reading.UNSURE
-    if reading is Reading.YES and may_hide_caution(said.strange):
-        return Reading.OTHER
-    return reading if len(said.strange) <= _MOST_STRANGE[_basis(reading, said, question)] else Reading.OTHER
-
-
-def _is_long_ago(said: Said) -> bool:
-    """Whether it tells how it was, which may have changed; that somebody was there, or left, still counts."""
-    stays = Claim.PRESENT in said.claims or said.is_parting
-    return said.is_past and not said.plain & {Claim.YES, Claim.NO} and not stays
-
-
-def _was_free(said: Said) -> bool:
-    """Whether a way is only said to have been free."""
-    return said.was_then and Claim.YES not in said.plain and bool(said.claims & {Claim.PASSABLE, Claim.AGREE})
-
-
-def _is_refusal(said: Said) -> bool:
-    """Whether a No stands whatever else is said: an explicit one, or an order to keep out."""
-    return bool(said.claims & {Claim.NO, Claim.AWAY}) and not said.claims & {Claim.YES, Claim.AGREE, Claim.PASSABLE}
-
-
-def _basis(reading: Reading, said: Said, question: Question) -> str:
-    """What the reading rests on."""
-    if _topic(question) is GapKind.OBSTACLE and Claim.PASSABLE in said.claims and not said.claims & {Claim.YES}:
-        return "derived yes" if not said.is_benign else "benign, explained" if said.is_clean else "benign"
-    if reading is Reading.YES and said.claims == {Claim.BOOST}:
-        return "derived yes"
-    if reading is Reading.YES:
-        explained = said.breaks_after_plain or _topic(question) is not GapKind.OBSTACLE
-        if Claim.YES in said.claims:
-            return "yes, explained" if explained else "yes"
-        return "derived, explained" if Claim.PRESENT in said.claims and said.is_clean else "derived"
-    if Claim.NO in said.claims or Claim.ABSENT not in said.claims:
-        return "no" if Claim.NO in said.claims else "derived no"
-    return "absent, explained" if said.is_clean else "absent"
 
 
 def _by_values(claims: set[Claim], words: str, question: Question) -> set[Reading]:

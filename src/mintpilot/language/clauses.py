@@ -29,6 +29,9 @@ from mintpilot.language.patterns import (
 )
 from mintpilot.language.phrases import parse_phrase
 
+_PEOPLE = lexicon.PEOPLE | lexicon.ROLES | lexicon.PERSONAL
+_NOT_CARRIED = "'{}' cannot be picked up or carried: the drone brings things to people, not people to places"
+
 
 @dataclass(slots=True, kw_only=True)
 class Reading:
@@ -44,7 +47,7 @@ class Reading:
         before = next((g.reference for g in reversed(self.subgoals)), None)
         reference = parse_phrase(phrase, before)
         if reference.phrase in lexicon.PRONOUNS:
-            people = (g.reference for g in reversed(self.subgoals) if g.reference.label == "person")
+            people = (g.reference for g in reversed(self.subgoals) if _is_of_people(g.reference))
             before = next(people, None) if reference.phrase in lexicon.PERSONAL else before
             if before is None:
                 raise InputError(f"'{reference.phrase}' refers to nothing that was named before: name the thing")
@@ -54,6 +57,10 @@ class Reading:
     def add(self, action: Action, reference: Reference) -> None:
         """Notes one step."""
         self.subgoals.append(SubGoal(action=action, reference=reference))
+
+
+def _is_of_people(reference: Reference) -> bool:
+    return reference.label == "person" or reference.label in lexicon.ROLES
 
 
 def read_clause(clause: str, reading: Reading) -> bool:
@@ -73,8 +80,12 @@ def _move(reading: Reading, *, thing: str, source: str | None = None, goal: str)
     """Bring something somewhere: picked up first unless it is carried already."""
     if thing in ("over", "up", "back", "straight", "directly", "on"):
         return False
+    if thing in lexicon.PERSONAL:
+        raise InputError(_NOT_CARRIED.format(thing))
+    if goal in ("me", "us"):
+        raise InputError(f"'{thing}' to be brought to '{goal}': where you are is not known here, so name the place")
     if thing in lexicon.PRONOUNS or (reading.carrying and source is None):
-        if not reading.carrying:
+        if not reading.carrying and not _pick_named(reading):
             raise InputError(f"'{thing}' to be brought to '{goal}' was not picked up before: say what to pick up")
     elif not _pick(reading, thing=thing, source=source):
         return False
@@ -83,10 +94,28 @@ def _move(reading: Reading, *, thing: str, source: str | None = None, goal: str)
     return True
 
 
+def _pick_named(reading: Reading) -> bool:
+    """``find the box and bring it to …``: what was gone to last is picked up, where it is one thing and nobody."""
+    last = reading.subgoals[-1] if reading.subgoals else None
+    if last is None or last.action is not Action.GO or last.reference.every or not last.reference.label:
+        return False
+    if _is_of_people(last.reference) or last.reference.label == "room":
+        return False
+    reading.add(Action.PICK, last.reference)
+    reading.carrying = True
+    return True
+
+
 def _pick(reading: Reading, *, thing: str, source: str | None = None) -> bool:
-    """Pick something up; out of a container it is the container that is flown to."""
-    if source is None:
-        reading.add(Action.PICK, reading.reference(thing))
+    """Pick something up; out of a container it is the container that is flown to. Nobody is picked up."""
+    thing = re.sub(r" (?:out|outside|away|along)$", "", thing)
+    reference = reading.reference(thing) if source is None or set(thing.split()) & _PEOPLE else None
+    if reference is not None and _is_of_people(reference):
+        raise InputError(_NOT_CARRIED.format(thing))
+    if source is None and reference is not None:
+        reading.add(Action.PICK, reference)
+    elif source is None:
+        return False
     else:
         inside = " ".join(w for w in thing.split() if w not in lexicon.DETERMINERS)
         holder = reading.reference(source)

@@ -17,6 +17,7 @@ from mintpilot.language import lexicon, patterns
 from mintpilot.language.clauses import Reading, read_clause
 from mintpilot.language.phrases import parse_phrase
 from mintpilot.language.rewriting import rewritten
+from mintpilot.language.slips import mended
 
 _LONGEST = 600
 _DOING = {Action.GO: "go to", Action.PICK: "pick up at", Action.DELIVER: "deliver to", Action.LOOK: "look into"}
@@ -64,7 +65,8 @@ def parse_instruction(text: str, capabilities: Capabilities | None = None, *, ho
 
 
 def _normal(text: str) -> str:
-    words = " ".join(text.replace("\N{RIGHT SINGLE QUOTATION MARK}", "'").lower().split())
+    spoken = patterns.FILLER.sub(" ", text.replace("\N{RIGHT SINGLE QUOTATION MARK}", "'").lower())
+    words = re.sub(r"[a-z]+", lambda found: mended(found[0], lexicon.MENDED), " ".join(spoken.split()))
     if not re.search(r"[a-z]", words):
         raise InputError(f"instruction '{text[:40]}' has no words: say what to do, as in 'go to the red box'")
     if len(words) > _LONGEST:
@@ -76,7 +78,7 @@ def _avoidances(words: str) -> tuple[str, tuple[Avoidance, ...]]:
     found: list[Avoidance] = []
     for match in patterns.AVOID.finditer(words):
         what = match["what"].strip()
-        kind = next((k for word, k in lexicon.AVOIDED.items() if re.search(rf"\b{word}\b", what)), None)
+        kind = next((k for word, k in lexicon.AVOIDED.items() if re.search(rf"\b{word}s?\b", what)), None)
         if kind is None and not set(what.split()) & lexicon.NEVER_TOUCHED:
             raise InputError(f"'{what}' cannot be avoided by name: only smoke, doors and areas marked on the map can")
         if kind is not None:

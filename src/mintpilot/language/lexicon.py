@@ -51,14 +51,23 @@ ADJECTIVES: dict[str, tuple[str, str]] = {
 
 PEOPLE = _words(
     "person people victim victims survivor survivors casualty casualties patient patients human humans man woman child "
-    "men women children worker workers colleague firefighter guard anyone anybody someone somebody everyone everybody"
+    "men women children worker workers colleague firefighter guard anyone anybody someone somebody everyone everybody "
+    "guy guys lady girl boy kid kids"
 )
 """Nouns that mean the label ``person``."""
+
+ROLES = _words("nurse medic doctor paramedic fireman caretaker driver operator officer mechanic")
+"""Nouns that mean people, who are called by what they do."""
 
 ANYBODY = _words("anyone anybody someone somebody everyone everybody people survivors victims casualties")
 """Nouns that mean whoever is there, not a certain person."""
 
 ROOMS = _words("room rooms chamber chambers office offices")
+
+ROOM_KINDS = _words(
+    "kitchen bathroom workshop canteen bedroom classroom storeroom laboratory lab toilet cellar basement"
+)
+"""Rooms that are called by what they are for; which one it is must be asked."""
 
 PRONOUNS = _words("it them this that him her there")
 
@@ -74,6 +83,9 @@ VENUES = _words("warehouse building hall hangar house factory area zone place si
 
 IRREGULAR = {"shelves": "shelf", "boxes": "box", "crates": "crate", "people": "person", "men": "man", "women": "woman"}
 """Plurals that do not only add an s."""
+
+MENDED = _words("the and then please avoid without through person injured wounded everyone anyone smoke")
+"""Words that are read with a letter lost or two exchanged: no names of things are made of them."""
 
 AVOIDED: dict[str, RegionKind] = {
     "smoke": RegionKind.SMOKE,

@@ -13,7 +13,7 @@ _OF_OTHERS = re.compile(r"\b(?:i|we|they|he|she|who|everyone|everybody|people|no
 """Where people come back it is no order: ``I will come back to you``."""
 _NO_LANDING = re.compile(
     r"\b(?:i|we|they|he|she|who|(?:every|some|any)(?:one|body)|people|nobody)(?: (?!said\b|say\b)\w+)?\s*$"
-    r"|\b(?:(?<!you )to|can|could|may|might|the|a|this|that|my|our|of|no|dry|open|flat|waste|is|are|was|were|been|it)\s*$"
+    r"|\b(?:(?<!you )to|can|could|may|might|the|a|this|that|my|our|of|no|dry|open|flat|is|are|was|were|been|it)\s*$"
     r"|\bin(?: \w+)?\s*$"
 )
 """``I put it down there``, ``room to land``, ``on dry land``."""

@@ -12,6 +12,8 @@ def any_of(*phrases: str) -> str:
     return f"(?:{'|'.join(phrases)})"
 
 
+FILLER = re.compile(r"\b(?:um+|uh+|er+|erm+|hm+|uhm+)\b,?")
+
 # What a clause is about -------------------------------------------------------------------------------------------
 
 PICK = any_of("pick up|pick|grab|take|collect|fetch|get|retrieve|lift|bring|carry|deliver|transport")
@@ -73,7 +75,7 @@ POLITE = re.compile(
     + r"\b\s*,?\s*)+"
 )
 TRAILING = re.compile(
-    r"\s*,?\s*" + any_of("please|thanks|thank you|now|quickly|immediately|as fast as you can|right away") + "$"
+    r"\s*,?\s*" + any_of("please|thanks|thank you|first|now|quickly|immediately|as fast as you can|right away") + "$"
 )
 
 # What is to be avoided --------------------------------------------------------------------------------------------
@@ -88,7 +90,7 @@ AVOID = re.compile(
     )
     + " (?:the |any |all |every )?(?P<what>[a-z ]+?)"
     + "(?P<soft> (?:if|when|where|whenever) (?:you can|possible|it is possible|you are able to)| as far as possible)?"
-    + "(?=$|[,.;]| and | then | but )"
+    + "(?=$|[,.;]| and | then | but | while )"
 )
 
 # Who is sought ----------------------------------------------------------------------------------------------------

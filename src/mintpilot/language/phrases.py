@@ -76,6 +76,8 @@ def _describe(words: str, before: Reference | None) -> Reference:
     said = tuple(_attribute(word) for word in adjectives)
     if noun in ("one", "ones") and before is not None:
         return Reference(phrase=words, label=before.label, attributes=(*said, *after), every=every)
+    if noun in lexicon.ROOM_KINDS:
+        said, noun = (*said, _attribute(noun)), "room"
     label = "person" if noun in lexicon.PEOPLE else "room" if noun in lexicon.ROOMS else singular(noun)
     plural = noun in lexicon.ANYBODY or (label != noun and noun not in lexicon.PEOPLE | lexicon.ROOMS)
     plural = plural or (noun in lexicon.PEOPLE | lexicon.ROOMS and singular(noun) != noun)

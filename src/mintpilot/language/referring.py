@@ -34,16 +34,21 @@ _NOT = re.compile(
 )
 _SHADES = frozenset(("light", "dark", "bright", "pale", "deep"))
 _OF_ANOTHER = re.compile(
-    r"\b(?:(?:next to|behind|beside|near|by|under|on|from|inside|with|wearing|opposite|left of|right of|in(?= \w))(?: (?:the|a|an|my|its))?"
-    r"|all(?: \w+){0,2}|\w+ish"
-    r"|(?!(?:it|that|this|one|ones|they|those|these|which|there|mine|thing|colou?r|want|mean|meant|need|said|such|not|yes|yeah)\b)"
-    r"\w+ (?:is|are|was|were)(?: all)?)$"
+    r"\b(?:(?:next to|behind|beside|near|by|under|on|from|inside|with|wearing|opposite|left of|right of|in(?= \w))"
+    r"(?: (?:the|a|an|my|its))?|all(?: \w+){0,2}|\w+ish"
+    r"|(?!(?:it|that|this|ones?|they|those|these|which|there|mine|thing|colou?r|want|mean|meant|need|said|such|not|yes"
+    r"|yeah)\b)\w+ (?:is|are|was|were)(?: all)?)$"
 )
 """What before a colour makes it one of something else: ``next to the red …``, ``my jacket is …``."""
 _FOLLOWERS = frozenset(
-    "one ones thing please yes yeah no not nor and or but with by near next on in at that which who as mate now then i we you it"
-    " is are was over under behind beside to from for sir thanks there here if though of course sure obviously definitely"
-    " have has both too also together either colour color such nosuch".split()
+    word
+    for words in (
+        "one ones thing box crate barrel bag bottle kit case parcel drum can container chest suitcase please yes yeah",
+        "no not nor and or but with by near next on in at that which who as mate now then i we you it is are was over",
+        "under behind beside to from for sir thanks there here if though of course sure obviously definitely have has",
+        "both too also together either last colour color such nosuch",
+    )
+    for word in words.split()
 )
 """What may follow the words for a thing that is asked about; after another noun they describe that."""
 _SIMILE = re.compile(rf"\b{_SUCH} as (?:a|an|the) \w+(?: \w+)?(?= *$| *[,.;!])")

@@ -40,8 +40,9 @@ _DONE = {
 _AFTER = rf"(?:when|once|after|as soon as) (?:you have|you've|you) (?P<done>{any_of(*_DONE)}) (?P<first>[^,;.]+?)"
 _VERB = any_of(
     "find|go|fly|check|look|search|pick|get|bring|avoid|stay|skip|visit|inspect|move|head|take|fetch|collect|locate",
-    "deliver|reach|grab",
+    "deliver|reach|grab|carry",
 )
+_SPARE = any_of("avoid|stay out of|keep out of|stay clear of|keep clear of|skip")
 
 _RULES: tuple[tuple[re.Pattern[str], str], ...] = tuple(
     (re.compile(pattern), said)
@@ -50,6 +51,15 @@ _RULES: tuple[tuple[re.Pattern[str], str], ...] = tuple(
         (r",? ?\bas (?:quickly|fast|soon|carefully|safely) as (?:possible|you can)\b", ""),
         (r"\b(?:very )?(?:carefully|slowly|quickly|immediately|swiftly|safely|cautiously)\b ?", ""),
         (r" for (?:me|us)\b", ""),
+        (r"\bthere's\b", "there is"),
+        (r"\bget (?:a )?hold of\b", "pick up"),
+        (r"\b(?:that's|that is|which is) (?:lying |sitting |standing )?"
+         r"(?=(?:next to|near|in|on|by|behind|under|beside)\b)", ""),
+        (r", (?:it|he|she|they)(?:'s| is| are| should be| must be| will be)(?: somewhere)? "
+         r"(?=(?:in|on|near|next to|by|behind|under|beside|inside) the\b)", " "),
+        (rf"^((?:if you can,? |please )*{_SPARE} (?:the )?[a-z ]+?) while (?:you )?(?:are )?"
+         rf"(?={_VERB}|{_GERUND})", r"\1, "),
+        (r"\b((?:look|check|search|peek) [^.;]*?),? (?:and )?then (?=(?:in|into|inside) )", r"\1, then look "),
         (rf"\b(?:make|be) sure (?:that you |you |to |that we )(?={_VERB})", ""),
         (rf"\b(?:remember|do not forget|don't forget|try|take care|manage) to (?={_VERB})", ""),
         (r"\bgo (?:and )?(?=(?:get|fetch|grab|find|pick|collect|bring|check|see|look|search)\b)", ""),

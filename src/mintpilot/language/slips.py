@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from itertools import pairwise
 
 
@@ -30,6 +30,19 @@ def is_slip(a: str, b: str) -> bool:
     if rest_a[1:] == rest_b[1:] or rest_a[1:] == rest_b or rest_a == rest_b[1:]:
         return True
     return rest_a[:2] == rest_b[1::-1] and rest_a[2:] == rest_b[2:]
+
+
+def mended(word: str, known: Collection[str]) -> str:
+    """The one known word that has a letter more or two letters exchanged, else the word itself.
+
+    Args:
+        word: in lower case.
+        known: words that a slip may be of.
+    """
+    if word in known or len(word) < _SHORTEST_WHOLE:
+        return word
+    near = [k for k in known if is_slip(word, k) and (sorted(word) == sorted(k) or (len(k) == len(word) + 1 > 5))]
+    return near[0] if len(near) == 1 else word
 
 
 def may_hide_caution(unknown: Sequence[str]) -> bool:
