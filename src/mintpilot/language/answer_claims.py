@@ -15,7 +15,7 @@ def _words(text: str) -> frozenset[str]:
 
 
 _DENIED_IS_SAFE = _words(
-    "dangerous toxic poisonous unsafe hazardous risky deadly lethal harmful blocked locked obstructed closed shut "
+    "dangerous toxic poisonous unsafe hazardous risky deadly lethal harmful blocked obstructed closed shut "
     "hurt harm damage jammed impassable sealed barred restricted forbidden prohibited contaminated "
 )
 """Of the dangers, those whose absence means that the way is free; without a fire there may still be gas."""

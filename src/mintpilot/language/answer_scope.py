@@ -162,6 +162,8 @@ class Scan:
             self._settle_bare(part)
         if part.negated:
             self.claim(Claim.NO)
+        if part.soft and self.about is GapKind.OBSTACLE:  # yes, slightly
+            self.any_doubt = True
         self.said.is_clean |= bool(part.claims & _WORLD) and not (part.strange or part.doubted)
         if part.doubted:
             self.any_doubt = True

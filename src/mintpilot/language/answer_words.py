@@ -94,12 +94,12 @@ ATTITUDES: dict[Kind, str] = {
     """,
     Kind.UNLIKELY: "unlikely|doubt|doubtful|doubts|i doubt|i doubt it|i doubt that|hardly any|very unlikely",
     Kind.SOFT: """
-        fairly|pretty|relatively|reasonably|mostly|almost|nearly|quite|rather|somewhat|partly|partially|half|a bit|
+        halfway|half way|ajar|unlocked|fairly|pretty|relatively|reasonably|mostly|almost|nearly|quite|rather|somewhat|partly|partially|half|a bit|
         a little|slightly|safe enough|enough|particularly|especially|exactly|moderately|fully|less|more|not so
     """,
     Kind.VERY: "very|really|extremely|highly|super|so very|incredibly|terribly|damn|bloody|way|far|much|properly",
     Kind.UNSURE: """
-        open it|open that|open the door|open them|how would i know|how should i know|who am i to say|
+        metre|metres|meter|meters|width|foot|feet|wing|open it|open that|open the door|open them|how would i know|how should i know|who am i to say|
         how am i supposed to know|the faintest|foggiest|do not get it|did not get it|do not get that|did not get that|
         do not understand|am not there|am not here|was not there|are not there|were not there|am not near|am not in|
         am not at|not on site|not at the site|not nearby|maybe|perhaps|possibly|might|might be|could be|may be|unsure|

@@ -25,6 +25,9 @@ PRODUCTS: tuple[tuple[Kind, str, str], ...] = (
         "a bit|a little|slightly|partly|half|halfway|up to|only|for a|for now|for people|for us",
     ),
     (Kind.UNSURE, "open|wide", "about|by"),
+    (Kind.UNSURE, "open", "mind|your|question|secret|to"),
+    (Kind.CONDITION, "in|for", "about|two|three|four|five|ten|twenty|a few|half|an hour|another"),
+    (Kind.ELSEWHERE, "i see|i can see|there is", "it|that|smoke|the smoke|the door|some smoke"),
     (Kind.THROUGH, "loads of|lots of|tons of|bags of|ample|heaps of|more than enough", "room|space"),
     (Kind.DANGER, "nothing|nobody|no one|noone", "gets through|gets past|can get through|fits through|comes through"),
     (
@@ -52,8 +55,8 @@ STATES: dict[Kind, str] = {
         choose another route|leave now
     """,
     Kind.SAFE: """
-        safe|safely|passable|harmless|flyable|navigable|breathable|traversable|secure|unlocked|unblocked|unobstructed|
-        ajar|wide open|open|fully open|completely open|all the way open|right open|off its hinges|off the hinges|
+        safe|safely|passable|harmless|flyable|navigable|breathable|traversable|secure|unblocked|unobstructed|
+        wide open|open|fully open|completely open|all the way open|right open|off its hinges|off the hinges|
         no door there any more|no door there anymore|no door any more|no door anymore|open wide|allowed|permitted|
         authorised|authorized|accessible|risk free|survivable|nothing to worry about|nothing to fear|nothing dangerous|
         nothing toxic|nothing harmful|nothing bad|nothing hazardous|nothing wrong|nothing in the way|
