@@ -108,11 +108,19 @@ def test_what_is_said_beyond_the_question_is_kept(text: str, left: set[str]) -> 
         ("come back", Command.RETURN),
         ("stop and come back", Command.RETURN),
         ("return to base immediately", Command.RETURN),
+        ("that is enough, land it now", Command.ABORT),
     ],
 )
 def test_orders_come_before_answers(text: str, command: Command) -> None:
     understood = understand_answer(text, questions.SMOKE)
     assert (understood.reading, understood.command) == (Reading.COMMAND, command)
+
+
+@pytest.mark.parametrize(
+    "text", ["it landed on the crate", "there is room to land", "don't land", "I put it down there"]
+)
+def test_what_tells_of_landing_is_no_order(text: str) -> None:
+    assert understand_answer(text, questions.SMOKE).reading is not Reading.COMMAND
 
 
 def test_words_about_the_world_are_answers_to_the_cut_whichever_way_it_is_put() -> None:
@@ -128,6 +136,8 @@ def test_words_about_the_world_are_answers_to_the_cut_whichever_way_it_is_put() 
     assert understand_answer("it is toxic", turned).reply is Reply.YES
     assert understand_answer("it is safe", turned).reply is Reply.NO
     assert understand_answer("it is toxic", questions.SMOKE).reply is Reply.NO
+    for turned_at_but in ("it was toxic but it is fine", "no, but there is a beam in the way"):
+        assert understand_answer(turned_at_but, turned).reply is not Reply.NO
 
 
 def test_a_statement_about_one_of_two_clouds_settles_nothing() -> None:

@@ -79,7 +79,7 @@ def _out(scan: Scan, _: Atom) -> None:
     if part.some and not part.negated:
         scan.claim(Claim.UNCLEAR)
     elif part.subject is Kind.NOBODY:
-        scan.claim(Claim.UNCLEAR if part.negated else Claim.PRESENT)
+        scan.claim(Claim.UNCLEAR if part.negated or part.strange else Claim.PRESENT)
     elif part.subject in (Kind.EVERYBODY, Kind.ONE):
         scan.claim(Claim.PRESENT if part.negated else Claim.ABSENT)
     elif part.subject is not None:

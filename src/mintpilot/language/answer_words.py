@@ -94,26 +94,27 @@ ATTITUDES: dict[Kind, str] = {
     """,
     Kind.UNLIKELY: "unlikely|doubt|doubtful|doubts|i doubt|i doubt it|i doubt that|hardly any|very unlikely",
     Kind.SOFT: """
-        halfway|half way|ajar|unlocked|fairly|pretty|relatively|reasonably|mostly|almost|nearly|quite|rather|somewhat|partly|partially|half|a bit|
-        a little|slightly|safe enough|enough|particularly|especially|exactly|moderately|fully|less|more|not so
+        halfway|half way|ajar|unlocked|fairly|pretty|relatively|reasonably|mostly|almost|nearly|quite|rather|somewhat|
+        partly|partially|half|a bit|a little|slightly|safe enough|enough|particularly|especially|exactly|moderately|
+        fully|less|more|not so
     """,
     Kind.VERY: "very|really|extremely|highly|super|so very|incredibly|terribly|damn|bloody|way|far|much|properly",
     Kind.UNSURE: """
-        metre|metres|meter|meters|width|foot|feet|wing|open it|open that|open the door|open them|how would i know|how should i know|who am i to say|
-        how am i supposed to know|the faintest|foggiest|do not get it|did not get it|do not get that|did not get that|
-        do not understand|am not there|am not here|was not there|are not there|were not there|am not near|am not in|
-        am not at|not on site|not at the site|not nearby|maybe|perhaps|possibly|might|might be|could be|may be|unsure|
-        uncertain|unclear|no idea|no clue|not a clue|not the foggiest|no information|no data|no news|no signal|
-        no memory|no opinion|no comment|no way of knowing|no way of telling|no way to know|no way to tell|
-        no means of knowing|no view|who knows|who can tell|who can say|god knows|heaven knows|lord knows|
-        goodness knows|search me|beats me|you tell me|your guess|your guess is as good as mine|your choice|your call|
-        your decision|up to you|you decide|you choose|you pick|you are the expert|it depends|depends|that depends|
-        depending|yes and no|yes or no|fifty fifty|50 50|half and half|either|either one|either way|toss up|coin toss|
-        a toss up|iffy|hard to say|hard to tell|hard to know|hard to see|hard to judge|hard to decide|difficult to say|
-        difficult to tell|difficult to know|tough to say|tough call|tough one|hard one|tricky|tricky one|
-        impossible to say|impossible to tell|impossible to know|good question|ask me later|ask me again|ask again|
-        ask somebody else|ask someone else|ask later|ask someone|ask somebody|ask them|ask him|not my call|
-        not my decision|not my job|do not ask me|do not know|do not care|do not mind|not care|not matter|
+        metre|metres|meter|meters|width|foot|feet|wing|open it|open that|open the door|open them|how would i know|
+        how should i know|who am i to say|how am i supposed to know|the faintest|foggiest|do not get it|did not get it|
+        do not get that|did not get that|do not understand|am not there|am not here|was not there|are not there|
+        were not there|am not near|am not in|am not at|not on site|not at the site|not nearby|maybe|perhaps|possibly|
+        might|might be|could be|may be|unsure|uncertain|unclear|no idea|no clue|not a clue|not the foggiest|
+        no information|no data|no news|no signal|no memory|no opinion|no comment|no way of knowing|no way of telling|
+        no way to know|no way to tell|no means of knowing|no view|who knows|who can tell|who can say|god knows|
+        heaven knows|lord knows|goodness knows|search me|beats me|you tell me|your guess|your guess is as good as mine|
+        your choice|your call|your decision|up to you|you decide|you choose|you pick|you are the expert|it depends|
+        depends|that depends|depending|yes and no|yes or no|fifty fifty|50 50|half and half|either|either one|
+        either way|toss up|coin toss|a toss up|iffy|hard to say|hard to tell|hard to know|hard to see|hard to judge|
+        hard to decide|difficult to say|difficult to tell|difficult to know|tough to say|tough call|tough one|hard one|
+        tricky|tricky one|impossible to say|impossible to tell|impossible to know|good question|ask me later|
+        ask me again|ask again|ask somebody else|ask someone else|ask later|ask someone|ask somebody|ask them|ask him|
+        not my call|not my decision|not my job|do not ask me|do not know|do not care|do not mind|not care|not matter|
         makes no difference|no difference|whatever|whichever|whatever you like|whatever you think|suit yourself|
         as you like|as you wish|rain check|if you like|if you want|if you wish|if you must|so so|borderline|debatable|
         questionable|mixed|undecided|torn|on the fence|blank|forgot|forgotten|i forget|my mind is blank|skip|
@@ -135,9 +136,10 @@ ATTITUDES: dict[Kind, str] = {
         gamble on it
     """,
     Kind.ELSEWHERE: """
-        next|next room|the other room|next door|other room|upstairs|downstairs|left one|right one|on the left|
-        on the right|to the left|to the right|the left|opposite|adjacent|neighbouring|another room|the other door|
-        other door|second one|first one|right
+        i am here|we are here|i am listening|i heard you|i hear you|yes hello|speaking|we called|we have called|
+        go ahead of|no problem with the|next|next room|the other room|next door|other room|upstairs|downstairs|
+        left one|right one|on the left|on the right|to the left|to the right|the left|opposite|adjacent|neighbouring|
+        another room|the other door|other door|second one|first one|right
     """,
     Kind.STALL: """
         wait|wait a moment|wait a second|wait a minute|wait a sec|wait a bit|hold on|hang on|one moment|one second|

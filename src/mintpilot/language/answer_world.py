@@ -55,8 +55,8 @@ STATES: dict[Kind, str] = {
         choose another route|leave now
     """,
     Kind.SAFE: """
-        safe|safely|passable|harmless|flyable|navigable|breathable|traversable|secure|unblocked|unobstructed|
-        wide open|open|fully open|completely open|all the way open|right open|off its hinges|off the hinges|
+        safe|safely|passable|harmless|flyable|navigable|breathable|traversable|secure|unblocked|unobstructed|wide open|
+        open|fully open|completely open|all the way open|right open|off its hinges|off the hinges|
         no door there any more|no door there anymore|no door any more|no door anymore|open wide|allowed|permitted|
         authorised|authorized|accessible|risk free|survivable|nothing to worry about|nothing to fear|nothing dangerous|
         nothing toxic|nothing harmful|nothing bad|nothing hazardous|nothing wrong|nothing in the way|
@@ -149,11 +149,11 @@ STATES: dict[Kind, str] = {
         passed out|lying|bleeding|buried|needs help|need help|unresponsive|burned|collapsed
     """,
     Kind.EMPTY: """
-        empty|vacant|deserted|unoccupied|abandoned|uninhabited|disused|unused|nobody home|all out|all gone|all left|
-        all evacuated|all escaped|all got out|all made it out|all accounted for|all safely out|all outside|
-        been evacuated|was evacuated|is evacuated|fully evacuated|swept|been searched|already searched|
-        a storeroom only|got everyone out|got everybody out|got them all out|got them out|evacuated everyone|
-        evacuated everybody|lifeless
+        got everyone|got everybody|got them all|empty|vacant|deserted|unoccupied|abandoned|uninhabited|disused|unused|
+        nobody home|all out|all gone|all left|all evacuated|all escaped|all got out|all made it out|all accounted for|
+        all safely out|all outside|been evacuated|was evacuated|is evacuated|fully evacuated|swept|been searched|
+        already searched|a storeroom only|got everyone out|got everybody out|got them all out|got them out|
+        evacuated everyone|evacuated everybody|lifeless
     """,
     Kind.OCCUPIED: """
         occupied|inhabited|crowded|full of people|not empty|manned|populated|full of kids|full of workers

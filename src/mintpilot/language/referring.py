@@ -34,12 +34,15 @@ _NOT = re.compile(
 )
 _SHADES = frozenset(("light", "dark", "bright", "pale", "deep"))
 _OF_ANOTHER = re.compile(
-    r"\b(?:(?:next to|behind|beside|near|by|under|on|from|inside|with|wearing|opposite|left of|right of|in(?= \w))"
+    r"\b(?:(?:next to|behind|beside|near|by|under|on|from|inside|with|wearing|has|feeling|out of|opposite"
+    r"|left of|right of|in(?= \w)|(?<!one )(?<!box )in)"
     r"(?: (?:the|a|an|my|its))?|all(?: \w+){0,2}|\w+ish"
     r"|(?!(?:it|that|this|ones?|they|those|these|which|there|mine|thing|colou?r|want|mean|meant|need|said|such|not|yes"
     r"|yeah)\b)\w+ (?:is|are|was|were)(?: all)?)$"
 )
 """What before a colour makes it one of something else: ``next to the red …``, ``my jacket is …``."""
+_TOLD = re.compile(r"\w+ (?:is|was|has|are|were) (?!(?:it|the|right|correct|mine|what|that|fine|good|ok)\b)\w")
+"""What follows where a thing is only described: ``the red one is empty``."""
 _FOLLOWERS = frozenset(
     word
     for words in (
@@ -156,6 +159,7 @@ def _runs(words: str, gap: KnowledgeGap) -> Iterator[str | set[str] | tuple[set[
             end, fits = end + 1, fits & named
         following = tokens[end] if end < len(tokens) else ","
         is_named = following in _FOLLOWERS | nouns or not following.isalpha()
+        is_named &= _TOLD.match(" ".join(tokens[end:])) is None
         if end > at and is_named and _OF_ANOTHER.search(" ".join(tokens[:at])) is None:
             yield fits
         else:
