@@ -35,6 +35,8 @@ class Kind(StrEnum):
     """A part of all: ``most``, ``two of``."""
     INSIDE = "inside"
     OUT = "out"
+    BYSTANDING = "bystanding"
+    """Places where people are who are out: ``in the car park``."""
     LEFT = "left"
     """``nobody left`` is said of empty rooms, and of rooms that nobody left."""
     TRAPPED = "trapped"

@@ -16,7 +16,7 @@ _ABOUT_WAYS = frozenset((Kind.THROUGH, Kind.AROUND, Kind.SAFE, Kind.DANGER, Kind
 _ABOUT_PEOPLE = frozenset(
     (
         *(Kind.PERSON, Kind.ONE, Kind.EVERYBODY, Kind.SOME, Kind.INSIDE, Kind.OUT, Kind.LEFT, Kind.TRAPPED),
-        *(Kind.THING, Kind.EMPTY, Kind.OCCUPIED, Kind.TRACE, Kind.PERCEIVE, Kind.NUMBER, Kind.EXIST),
+        *(Kind.BYSTANDING, Kind.THING, Kind.EMPTY, Kind.OCCUPIED, Kind.TRACE, Kind.PERCEIVE, Kind.NUMBER, Kind.EXIST),
     )
 )
 _UNHEARD: dict[GapKind, frozenset[Kind]] = {
@@ -27,7 +27,17 @@ _UNHEARD: dict[GapKind, frozenset[Kind]] = {
 }
 """Classes that say nothing about the kind of thing that was asked."""
 _FOREIGN = frozenset(
-    (Kind.DANGER, Kind.HAZARD, Kind.BENIGN, Kind.PERSON, Kind.ONE, Kind.EVERYBODY, Kind.TRACE, Kind.THING)
+    (
+        Kind.DANGER,
+        Kind.HAZARD,
+        Kind.BENIGN,
+        Kind.PERSON,
+        Kind.ONE,
+        Kind.EVERYBODY,
+        Kind.TRACE,
+        Kind.THING,
+        Kind.BYSTANDING,
+    )
 )
 """Of these, the ones that make an answer one about something else."""
 
@@ -67,20 +77,12 @@ _AT_END = {"in": Kind.INSIDE, "what": Kind.UNSURE, "sorry": Kind.UNSURE, "right"
            "go": Kind.AGREE, "pass": Kind.UNSURE, "no": Kind.NO}  # fmt: skip
 """Words that say something only where nothing follows; all but ``in`` only where nothing goes before either."""
 _ENDING = frozenset(
-    (
-        ("it", "is"),
-        ("it", "does"),
-        ("i", "do"),
-        ("you", "can"),
-        ("you", "may"),
-        ("you", "should"),
-        ("please", "do"),
-        ("that", "is"),
-        ("it", "should"),
-        ("bang", "on"),
-        ("dead", "on"),
+    tuple(phrase.split())
+    for phrase in (
+        "it is", "it does", "i do", "you can", "you may", "you should",
+        "please do", "that is", "it should", "bang on", "dead on",
     )
-)
+)  # fmt: skip
 _JUDGING = frozenset((("good",), ("fine",)))
 """Consent only where they are the whole of what is said: not in ``good morning``."""
 _AFTER_JUDGING = frozenset(["to", "go", "by", "with", "then", "now", "thanks", "so", "for", "we", "you", "just"])

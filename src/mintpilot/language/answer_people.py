@@ -137,7 +137,8 @@ def _occupied(scan: Scan, atom: Atom) -> None:
 
 PEOPLE: dict[Kind, Callable[[Scan, Atom], None]] = {
     Kind.PERSON: _person, Kind.NUMBER: _number, Kind.ONE: _subject, Kind.EVERYBODY: _subject, Kind.NOBODY:
-    _nobody, Kind.SOME: _some, Kind.INSIDE: _inside, Kind.TRAPPED: _trapped, Kind.OUT: _out, Kind.LEFT: _left,
+    _nobody, Kind.SOME: _some, Kind.INSIDE: _inside, Kind.TRAPPED: _trapped, Kind.BYSTANDING: _out,
+    Kind.OUT: _out, Kind.LEFT: _left,
     Kind.TRACE: _trace, Kind.PERCEIVE: _perceive, Kind.EXIST: _exist,
     Kind.EMPTY: lambda scan, _: scan.claim(Claim.PRESENT if scan.part.negated else Claim.ABSENT),
     Kind.THING: _thing, Kind.VERB: _verb,

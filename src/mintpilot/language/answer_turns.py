@@ -38,6 +38,7 @@ _STATEMENT = re.compile(
     r"|(?:some|every)(?:body|one)|all of them|the|a|an|one)\b"
 )
 """How something new begins that is said of the world: no mere ``but toxic``, ``but only if``."""
+_OF_IT = re.compile(r"(?:(?:yes|yeah|no|well|oh|ok|so)[ ,]+)*(?:it|that|this) (?:was|used|had|is)\b")
 _WAS = re.compile(r"\b(?:was|were|used to|had been|had)\b")
 
 
@@ -48,6 +49,8 @@ class Turn:
     after: str
     is_past: bool
     """Whether what stands before it tells how it was."""
+    of_it: bool
+    """Whether that is said of the thing asked about: ``it was …``."""
     is_now: bool
     """Whether what stands after it says how it is now."""
 
@@ -60,7 +63,7 @@ def turn(words: str) -> Turn | None:
     found, is_past = _STATEMENT.match(after), _WAS.search(before) is not None
     if not before.strip(" ,.;") or found is None or (found["own"] and not is_past):
         return None
-    return Turn(after, is_past, "now" in (*but.split(), *after.split()))
+    return Turn(after, is_past, _OF_IT.match(before) is not None, "now" in (*but.split(), *after.split()))
 
 
 def corrected(words: str) -> str:

@@ -133,15 +133,17 @@ STATES: dict[Kind, str] = {
         in the corner|under the desk|on the floor|still in|remains|remain|remained|went in|gone in|walked in|ran in|
         came in|stayed behind|left behind|stayed
     """,
+    Kind.BYSTANDING: """
+        in the car park|in the yard|in the street|across the road|out front|with the ambulance|with the medics|
+        with the medic|with the doctor|in the ambulance
+    """,
     Kind.OUT: """
         out|outside|got out|get out|came out|come out|gets out|getting out|went out|made it out|make it out|made it|
         escaped|escape|evacuated|evacuate|evacuating|rescued|gone|went home|gone home|left already|already left|
         left the building|left the room|left hours ago|have left|has left|had left|leave|leaving|leaves|exit|exited|
         exiting|run out|get away|got away|have all left|walked out|ran out|ran away|accounted for|out of there|
-        out here|in the car park|in the yard|in the street|across the road|out front|with the ambulance|
-        with the medics|with the medic|with the doctor|in the ambulance|moved out|climbed out|elsewhere|somewhere else|
-        with me|with us|safe outside|at the assembly point|brought out|pulled out|carried out|cleared out|off site|
-        offsite|go out|left yesterday
+        out here|moved out|climbed out|elsewhere|somewhere else|with me|with us|safe outside|at the assembly point|
+        brought out|pulled out|carried out|cleared out|off site|offsite|go out|left yesterday
     """,
     Kind.LEFT: "left",
     Kind.TRAPPED: """

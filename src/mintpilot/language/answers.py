@@ -85,7 +85,7 @@ def _turned(words: str, question: Question) -> Understood | None:
     after = _read(found.after, question)
     if after.reading is Reading.NO and no_counts:
         return after if found.is_past or about is not GapKind.PRESENCE else None
-    outweighs = found.is_past and (about is GapKind.PRESENCE or found.is_now)
+    outweighs = found.is_past and (about is GapKind.PRESENCE or (found.is_now and found.of_it))
     return after if after.reading is Reading.YES and outweighs else None
 
 
