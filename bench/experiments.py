@@ -33,9 +33,12 @@ class Measured:
 
     @property
     def throughput(self) -> str:
-        """Missions per minute, if any were flown now."""
+        """Missions per minute: of this run, or by the records where all were there already."""
         name = f"{self.experiment.name}, {self.experiment.vehicle}"
-        return f"{name}: {self.progress.per_minute:.0f} missions per minute" if self.progress.done else ""
+        if self.progress.done:
+            return f"{name}: {self.progress.per_minute:.0f} missions per minute"
+        walls = [t.wall_s for t in self.trials]
+        return f"{name}: {60 * len(walls) / sum(walls):.0f} missions per minute and worker" if walls else ""
 
     def of(self, method: str, cell: str = "") -> list[TrialRecord]:
         """The trials of one method in one cell."""
