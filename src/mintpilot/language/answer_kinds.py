@@ -89,3 +89,5 @@ class Atom:
 
     kind: Kind
     text: str
+    is_mended: bool = False
+    """True where a slip of typing was mended: of a way it may say No, never Yes."""

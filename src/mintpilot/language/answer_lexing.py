@@ -10,7 +10,7 @@ from mintpilot.core.gap import GapKind
 from mintpilot.language.answer_kinds import Atom, Kind
 from mintpilot.language.answer_words import ATTITUDES
 from mintpilot.language.answer_world import PRODUCTS, STATES
-from mintpilot.language.slips import is_slip
+from mintpilot.language.slips import is_slip, key_word
 
 _ABOUT_WAYS = frozenset((Kind.THROUGH, Kind.AROUND, Kind.SAFE, Kind.DANGER, Kind.HAZARD, Kind.BENIGN))
 _ABOUT_PEOPLE = frozenset(
@@ -67,6 +67,9 @@ _OPEN = (
     (r"^(?:know|knows)\b(?= *$| *[,.;!]| it | do )", "no"), (r"\bknow way\b", "no way"),
     (r"\bnot (?:all )?(?:that|so|too) (?=bad|dangerous|toxic|risky|hot|thick|safe|harmful|severe"
      r"|dense|hazardous|poison)", "not particularly "),
+    (r"^(?:ok|all ?right|right|well|oh)[ ,]+(?=no\b(?: *$| *[,.;!]| (?:it|that|not)\b))", ""),
+    (r"\bnone other than\b", ""), (r"\b(?:stopp|sttop|stpo|sotp)\b", "stop"),
+    (r"\bsafe to (?:(?:fly|go|pass|move|travel) (?:through|across|into|in(?= *$| *[,.;!]))|enter|cross)\b", "safe"),
     (r"\bno ?where\b", "nowhere"), (r"\bany ?(body|one)\b", r"any\1"), (r"\bsome ?(body|one)\b(?! of)", r"some\1"),
     (r"\bevery ?(body|one)\b(?! of)", r"every\1"), (r"\bno body\b", "nobody"), (r"\bnot? idea\b", "no idea"),
 )  # fmt: skip
@@ -135,7 +138,8 @@ def atoms(words: str, about: GapKind, known: frozenset[str] = frozenset()) -> li
             at += len(phrase)
             continue
         mended = _mend(token, about) if token not in known else None
-        found.append(Atom(mended or (Kind.NOISE if token in known else Kind.STRANGE), token))
+        kind = mended or (Kind.NOISE if token in known else Kind.STRANGE)
+        found.append(Atom(kind, token, is_mended=mended is not None))
         at += 1
     return found
 
@@ -189,6 +193,8 @@ def _index(about: GapKind) -> dict[str, list[tuple[str, ...]]]:
 @cache
 def _mend(token: str, about: GapKind) -> Kind | None:
     """The class of the one word that is a slip away, if all such words are of one class that may be mended."""
+    if (key := key_word(token)) is not None:
+        return _kinds(about).get((key,))
     if len(token) < _SHORTEST_MENDED or not token.isalpha():
         return None
     near = {

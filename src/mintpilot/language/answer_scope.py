@@ -34,6 +34,7 @@ class Claim(StrEnum):
 
 
 _WORLD = frozenset((Claim.PRESENT, Claim.ABSENT, Claim.BLOCKED, Claim.PASSABLE))
+_OPENING = frozenset((Claim.PASSABLE, Claim.YES, Claim.AGREE))
 _PLAIN = frozenset((Claim.YES, Claim.NO, Claim.AGREE))
 
 
@@ -130,7 +131,10 @@ class Scan:
         elif atom.kind in (Kind.SUBJECT, Kind.PLACE, Kind.PRONOUN):
             self._subject(atom.kind, following.kind)
         elif atom.kind in self._handlers:
+            before = set(self.said.claims)
             self._handlers[atom.kind](self, atom)
+            if atom.is_mended and self.about is GapKind.OBSTACLE and (self.said.claims - before) & _OPENING:
+                self.claim(Claim.UNCLEAR)
 
     def _subject(self, kind: Kind, following: Kind) -> None:
         """A new subject with its verb ends the reach of a negation, but for one that is passed on."""

@@ -7,8 +7,15 @@ from dataclasses import dataclass
 
 ECHO = re.compile(r"^(?:\w+ ){1,2}\? (?=\w)")
 """The question's word thrown back, before the answer: ``safe? it is burning``."""
+OPPOSITE = re.compile(
+    r"^(?:(?:yes|yeah|yep|yup|ok|right|sure|well|all ?right|true|exactly|of course|correct)[ ,.;!]+)+"
+    r"(?:(?:i|we) (?:have )?(?:just )?(?:checked|looked|know)(?: it)?[ ,.;!]+)?"
+    r"(?=(?:it|that|this|the \w+|that one|this one) (?:is|was|has)\b(?! (?:was|not a problem))"
+    r"|there is (?:\w+ly )?(?:nobody|no one|noone|not any|no people)|(?:nobody|no one|noone)\b|not (?:safe|that|this|it)\b)"
+)
+"""A yes-word before a statement of its own, which outweighs it where it is the opposite: ``yes, it is toxic``."""
 CORRECTION = re.compile(
-    r"\b(?:actually|no wait|wait no(?= \w)|(?<!what )i mean(?! it\b)|i meant|sorry|correction|scratch that|strike that"
+    r"\b(?:actually|no wait|wait no(?= \w)|(?<!what )i mean(?! it\b)|(?<!what )i meant|sorry|correction|scratch that|strike that"
     r"|cancel that|belay that"
     r"|disregard that|make that|on second thoughts?|changed my mind|wait(?= (?:no|yes)\b)|(?:hang|hold) on"
     r"(?= (?:no|yes)\b)|no sorry|rather(?= the\b))\b"
@@ -16,12 +23,16 @@ CORRECTION = re.compile(
 """What comes after counts."""
 NO_SPEECH = re.compile(r"[{}<>=\[\]\\|_@#^~`]|\w\(")
 """Marks of code: nobody says that to a drone."""
+EITHER_WAY = re.compile(r"\bonly (?:if|when)\b.*\b(?:otherwise|else|if not)\b")
+"""Both answers, by a condition: ``only if you stay high, otherwise no``."""
 PLAIN_NO = re.compile(r"(?:^|[,.;!?] )(?:no|nope|nah|never|do not|hell no|absolutely not|keep out|stay out)\b")
 GENTLE = re.compile(
     r"\bbut (?:please )?(?:be |go |fly |do it )?(?:very )?(?:careful|carefully|slow|slowly|gently|gentle|watch out"
     r"|quick|quickly|hurry(?: up)?|take care|mind your step)\b"
+    r"|^(?:(?:yes|yeah|it|that|there) )?should be no (?:problem|trouble|issue)(?: at all)?[ ,.;]+"
+    r"(?=(?:go|fly|head|come|proceed)\b)"
 )
-"""A condition that changes nothing."""
+"""Conditions and doubts that change nothing."""
 ASKS = re.compile(
     r"(?:^|[,.;] )(?:(?:well|so|and|but|um|uh|sorry|hey|ok|yes|no|right) )*(?:"
     r"(?:is|are|was|were|does|did|can|could|would|will|should|have|has|am|shall)"
@@ -39,6 +50,11 @@ _STATEMENT = re.compile(
 )
 """How something new begins that is said of the world: no mere ``but toxic``, ``but only if``."""
 _OF_IT = re.compile(r"(?:(?:yes|yeah|no|well|oh|ok|so)[ ,]+)*(?:it|that|this) (?:was|used|had|is)\b")
+_LOOKS = re.compile(
+    r"(?:(?:yes|no|well|oh|ok|so)[ ,]+)*(?:it|that|this|the \w+) (?:may |might )?(?:looks?|seems?|smells?|sounds?|appears?)"
+    r"(?: \w+){1,2}"
+)
+_GO_ON = re.compile(r"\b(?:go|fly|head|pass|come)(?: on| right| straight)? (?:through|ahead|in|on)\b|\bproceed\b")
 _WAS = re.compile(r"\b(?:was|were|used to|had been|had)\b")
 
 
@@ -53,6 +69,10 @@ class Turn:
     """Whether that is said of the thing asked about: ``it was …``."""
     is_now: bool
     """Whether what stands after it says how it is now."""
+    only_looks: bool = False
+    """Whether what stands before it only tells how it looks: ``it looks bad``."""
+    goes_on: bool = False
+    """Whether what stands after it tells the vehicle to go: ``… go through``."""
 
 
 def turn(words: str) -> Turn | None:
@@ -63,7 +83,14 @@ def turn(words: str) -> Turn | None:
     found, is_past = _STATEMENT.match(after), _WAS.search(before) is not None
     if not before.strip(" ,.;") or found is None or (found["own"] and not is_past):
         return None
-    return Turn(after, is_past, _OF_IT.match(before) is not None, "now" in (*but.split(), *after.split()))
+    return Turn(
+        after,
+        is_past,
+        of_it=_OF_IT.match(before) is not None,
+        is_now="now" in (*but.split(), *after.split()),
+        only_looks=_LOOKS.fullmatch(before.strip(" ,")) is not None,
+        goes_on=_GO_ON.search(after) is not None,
+    )
 
 
 def corrected(words: str) -> str:

@@ -9,8 +9,9 @@ from enum import StrEnum
 
 from mintpilot.core.gap import BLOCKED, GapKind
 from mintpilot.core.query import Question
+from mintpilot.language.answer_asides import beside_no, beside_yes
 from mintpilot.language.answer_scope import Claim, Said
-from mintpilot.language.answer_turns import PLAIN_NO, asks_back
+from mintpilot.language.answer_turns import EITHER_WAY, PLAIN_NO, asks_back
 from mintpilot.language.slips import may_hide_caution
 
 _MOST_STRANGE = {
@@ -75,6 +76,9 @@ def weighed(readings: set[Reading], said: Said, confused: bool, words: str, ques
     if (said.is_condition and reading is not careful) or (
         (said.is_condition or said.is_mockery) and not _is_refusal(said)
     ):
+        return Reading.OTHER
+    beside = {Reading.YES: beside_yes, Reading.NO: beside_no}.get(reading)
+    if EITHER_WAY.search(words) or (beside and beside(words, said, topic(question), question.text)):
         return Reading.OTHER
     if asks_back(words) and (reading is not careful or not PLAIN_NO.search(words)):
         return Reading.OTHER

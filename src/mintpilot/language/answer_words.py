@@ -6,7 +6,7 @@ from mintpilot.language.answer_kinds import Kind
 
 ATTITUDES: dict[Kind, str] = {
     Kind.YES: """
-        yes|yeah|yea|yep|yup|yah|yeh|yess|yse|ya|ye|aye|yessir|yes sir|yas|yip|affirmative|affirm|correct|exactly|
+        yes|ys|yeah|yea|yep|yup|yah|yeh|yess|yse|ya|ye|aye|yessir|yes sir|yas|yip|affirmative|affirm|correct|exactly|
         precisely|true|ok|okey|okie dokie|alright|all right|roger|roger that|copy|copy that|confirmed|confirm|
         i confirm|i can confirm|i can confirm it|uh huh|mhm|mm hm|mmhmm|y|10 4|ten four|agreed|i agree|that is right|
         that is correct|that is true|you are right|you are correct|that is the one|that is it|that one|this one|
@@ -168,7 +168,7 @@ ATTITUDES: dict[Kind, str] = {
         wonderful idea|lovely idea|what could go wrong|what could possibly go wrong|good luck|good luck with that|
         say goodbye|kidding|just kidding|joking|just joking|joke|funny|very funny|haha|ha ha|hahaha|lol|lmao|rofl|
         lmfao|lose|lose another|sure jan|bonfire|barbecue|barbeque|bbq|roast|roasted|grill|kamikaze|hero|my ass|
-        my arse|said no one ever|said nobody ever|clear as mud|safe as houses|dandy|what a surprise|whoopee|
+        never come back|never return|my arse|said no one ever|said nobody ever|clear as mud|safe as houses|dandy|what a surprise|whoopee|
         because that always works|like a hole|famous last words|psych|sike|ironic|sarcasm|yeah nah|nah yeah|oh great|
         oh wonderful|oh perfect|oh brilliant|oh fantastic|just great|just perfect|just wonderful|just what we need|
         burn the drone|queen|king|pope|santa|father christmas|easter bunny|tooth fairy|napoleon|superman|fried|crispy|

@@ -24,6 +24,11 @@ PRODUCTS: tuple[tuple[Kind, str, str], ...] = (
         "open|wide|safe|clear|free|wide enough|open enough|safe enough",
         "a bit|a little|slightly|partly|half|halfway|up to|only|for a|for now|for people|for us",
     ),
+    (
+        Kind.SAFE,
+        "nothing|nothing there|nothing in there|nothing in it",
+        "can hurt you|will hurt you|can harm you|will harm you|that can hurt you|that could hurt you|to hurt you",
+    ),
     (Kind.UNSURE, "open|wide", "about|by"),
     (Kind.UNSURE, "open", "mind|your|question|secret|to"),
     (Kind.CONDITION, "in|for", "about|two|three|four|five|ten|twenty|a few|half|an hour|another"),

@@ -14,10 +14,12 @@ from dataclasses import dataclass
 
 from mintpilot.core.gap import ABSENT, BLOCKED, PASSABLE, PRESENT, GapKind
 from mintpilot.core.query import Combine, Command, Literal, Question, Reply
+from mintpilot.language.answer_asides import ACKNOWLEDGED, CUT_OFF
 from mintpilot.language.answer_claims import read_claims
+from mintpilot.language.answer_echo import unechoed
 from mintpilot.language.answer_lexing import atoms, plain
 from mintpilot.language.answer_scope import Claim, Said
-from mintpilot.language.answer_turns import ECHO, GENTLE, NO_SPEECH, corrected, turn
+from mintpilot.language.answer_turns import ECHO, GENTLE, NO_SPEECH, OPPOSITE, corrected, turn
 from mintpilot.language.answer_weighing import Reading, no_is_careful, topic, weighed
 from mintpilot.language.orders import order_in
 from mintpilot.language.referring import Mention, mention, said_relation
@@ -65,9 +67,11 @@ def understand_answer(text: str, question: Question) -> Understood:
     order, words = order_in(plain(text))
     if order is not None:
         return Understood(reading=Reading.COMMAND, command=order)
-    if not words or len(words) > _LONGEST or NO_SPEECH.search(text):
+    if not words or len(words) > _LONGEST or NO_SPEECH.search(text) or CUT_OFF.search(text):
         return Understood(reading=Reading.OTHER)
-    words = corrected(words)
+    if ACKNOWLEDGED.fullmatch(words):
+        return Understood(reading=Reading.OTHER)
+    words = unechoed(corrected(words), question)
     return _turned(words, question) or _read(words, question)
 
 
@@ -76,7 +80,8 @@ def _turned(words: str, question: Question) -> Understood | None:
 
     A danger, or another thing than the one asked about, does; of rooms and ways, how it is now against how it was.
     """
-    about, echo, found = topic(question), ECHO.match(words), turn(words)
+    about, found = topic(question), turn(words)
+    echo = ECHO.match(words) or OPPOSITE.match(words)
     no_counts = about is not GapKind.OBSTACLE or no_is_careful(question)
     if echo is not None and no_counts and (answer := _read(words[echo.end() :], question)).reading is Reading.NO:
         return answer
@@ -86,6 +91,7 @@ def _turned(words: str, question: Question) -> Understood | None:
     if after.reading is Reading.NO and no_counts:
         return after if found.is_past or about is not GapKind.PRESENCE else None
     outweighs = found.is_past and (about is GapKind.PRESENCE or (found.is_now and found.of_it))
+    outweighs |= found.only_looks and found.goes_on
     return after if after.reading is Reading.YES and outweighs else None
 
 

@@ -59,6 +59,8 @@ def order_in(words: str) -> tuple[Command | None, str]:
         for found in reversed(list(pattern.finditer(words))):
             before = words[: found.start()]
             taken_back = _TAKEN_BACK.search(before)
+            if taken_back is not None and command is Command.RETURN and "never" in taken_back[0]:
+                continue  # ``never come back`` is mockery: it stays to be read
             if taken_back is not None:
                 words = f"{before[: taken_back.start()]} {words[found.end() :]}"
             elif told.search(before) is None:

@@ -41,7 +41,7 @@ _OF_ANOTHER = re.compile(
     r"|yeah)\b)\w+ (?:is|are|was|were)(?: all)?)$"
 )
 """What before a colour makes it one of something else: ``next to the red …``, ``my jacket is …``."""
-_TOLD = re.compile(r"\w+ (?:is|was|has|are|were) (?!(?:it|the|right|correct|mine|what|that|fine|good|ok)\b)\w")
+_TOLD = re.compile(r"with (?:envy|jealousy|rage|anger|shame|age)\b|\w+ (?:is|was|has|are|were) (?!(?:it|the|right|correct|mine|what|that|fine|good|ok)\b)\w")
 """What follows where a thing is only described: ``the red one is empty``."""
 _FOLLOWERS = frozenset(
     word

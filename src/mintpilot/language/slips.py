@@ -32,6 +32,22 @@ def is_slip(a: str, b: str) -> bool:
     return rest_a[:2] == rest_b[1::-1] and rest_a[2:] == rest_b[2:]
 
 
+_KEYS = ("nobody", "someone", "somebody", "anyone", "anybody", "dangerous", "toxic", "empty", "safe")
+_SHORTEST_LOSING = 5
+
+
+def key_word(token: str) -> str | None:
+    """The word on which an answer hangs of which this is a plain slip: letters exchanged, one doubled, one lost."""
+    for key in _KEYS:
+        if token[:1] != key[0] or token == key or not is_slip(token, key):
+            continue
+        is_doubled = len(token) > len(key) and any(a == b for a, b in pairwise(token))
+        is_lost = len(token) < len(key) >= _SHORTEST_LOSING
+        if sorted(token) == sorted(key) or is_doubled or is_lost:
+            return key
+    return None
+
+
 def mended(word: str, known: Collection[str]) -> str:
     """The one known word that has a letter more or two letters exchanged, else the word itself.
 
