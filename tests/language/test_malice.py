@@ -16,7 +16,7 @@ from mintpilot.cli.demos import demo_mission
 from mintpilot.core.events import Asked, Event, LegFlown, MissionEnded
 from mintpilot.core.gap import GapKind
 from mintpilot.core.mission import Outcome
-from mintpilot.core.ports import Operator, Recorder
+from mintpilot.core.ports import BetterWords, Operator, Recorder
 from mintpilot.core.query import Answer, Question, Reply
 from mintpilot.core.semantic_map import SemanticMap
 from mintpilot.elicitation.wording import word_question
@@ -69,8 +69,8 @@ class Literal(Operator):
     def __init__(self, knows: Operator) -> None:
         self._knows = knows
 
-    def ask(self, question: Question, patience_s: float) -> Answer:
-        answer = self._knows.ask(question, patience_s)
+    def ask(self, question: Question, patience_s: float, better: BetterWords | None = None) -> Answer:
+        answer = self._knows.ask(question, patience_s, better)
         turned = any(word in question.text.lower().split() for word in TURNED)
         flip = {Reply.YES: Reply.NO, Reply.NO: Reply.YES}
         return replace(answer, reply=flip.get(answer.reply, answer.reply)) if turned else answer

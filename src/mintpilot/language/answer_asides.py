@@ -9,10 +9,10 @@ from mintpilot.language.answer_echo import PREPOSITION
 from mintpilot.language.answer_scope import Claim, Said
 from mintpilot.language.lexicon import ADJECTIVES
 
-_HEARD = r"(?:ok|all ?right|right|fine|good|great|well|so|then|sure|roger|copy|noted|got it|oh|ah|and|now|lovely|that)"
+_HEARD = r"(?:ok|al?l ?right|right|fine|good|great|well|so|then|sure|roger|copy|oh|ah|and|now|lovely|that)"
 _COURTESY = (
-    r"(?:(?:many )?thanks(?: a lot| very much| so much| again)?|thank you(?: very much| so much| again| all)?|cheers"
-    r"|ta|(?:good)?bye(?: bye| now)?|good ?night|see you(?: later| soon)?|i see|i hear you|i understand|understood"
+    r"(?:(?:(?:many )?thanks|thank you)(?: a lot| a bunch| a million| very much| so much| again| all)?|cheers|ta|noted"
+    r"|(?:good)?bye(?: bye| now)?|good ?night|see you(?: later| soon)?|i see|i hear you|i understand|understood|got it"
     r"|have a (?:good|nice) \w+|mate|drone|sir)"
 )
 ACKNOWLEDGED = re.compile(rf"(?:{_HEARD}[ ,.;!]*)*{_COURTESY}[ ,.;!]*(?:(?:{_HEARD}|{_COURTESY})[ ,.;!]*)*")
@@ -27,16 +27,21 @@ _DESCRIBED = re.compile(
     r"|done|gone|had|made|known|permission|clearance|already|never|the|a|an|my|your|his|our|this|all)\b)(?!\w+ed\b)\w+"
 )
 """How the thing looks, where it is, or what somebody has: no answer to whether it is safe."""
-_PLACES = "room|window|office|kitchen|workshop|hall|cellar|basement|garage|roof|garden|yard|street|canteen|toilet|shed"
+_PLACES = (
+    "room|corridor|hallway|window|office|kitchen|workshop|hall|cellar|basement|garage|roof|garden|yard|street|canteen"
+    "|toilet|shed"
+)
 _DOORS = "door|doorway|gate"
 _NAMED = re.compile(rf"\b(?:the|that|this|other) (?P<noun>{_PLACES}|{_DOORS}) (?:there )?(?:is|are|looks|seems|was)\b")
+_INSIDE_OF = re.compile(rf"\bin the (?P<noun>{_PLACES})\b")
+_COLOURED = re.compile(rf"\b(?:the|that|this) (?P<noun>{_LOOKS}) \w")
 _AT = re.compile(
     rf"\b(?:one|smoke|cloud|room|area|{_DOORS}) (?:that is |over )?(?!in the way)"
-    rf"{PREPOSITION} (?:the|that|my|our|your)\b"
+    rf"{PREPOSITION} (?:the|that|my|our|your|it)\b"
 )
 """Another one than the one asked about: ``the one by the gate``; its own name was taken out before."""
 _OTHERS_FAIL = re.compile(
-    r"\b(?:the|a|an|my|our) (?!(?:drone|smoke|way|path|door|route|thing)\b)(?P<noun>\w+)"
+    r"\b(?:the|my|our) (?!(?:drone|smoke|way|path|door|route|thing)\b)(?P<noun>\w+)"
     r" (?:can|could|will|would|did|does) not (?:get|go|come|fit|pass|drive|walk)\b"
 )
 _SHUT = re.compile(r"\b(?:window|windows|lid|drawer|shutter|shutters|eyes|mouth|shop|curtain|curtains)\b")
@@ -57,7 +62,8 @@ def beside_yes(words: str, said: Said, about: GapKind, asked: str) -> bool:
     if _DESCRIBED.search(words) and not said.claims & _WORLD:
         return True
     own = _known(asked)
-    return _AT.search(words) is not None or any(found["noun"] not in own for found in _NAMED.finditer(words))
+    named = [found["noun"] for pattern in (_NAMED, _COLOURED, _INSIDE_OF) for found in pattern.finditer(words)]
+    return _AT.search(words) is not None or not own.issuperset(named)
 
 
 def beside_no(words: str, said: Said, about: GapKind, asked: str) -> bool:

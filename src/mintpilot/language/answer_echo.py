@@ -29,13 +29,13 @@ def unechoed(words: str, question: Question) -> str:
     if len(question.gaps) != 1 or question.gaps[0].kind not in (GapKind.OBSTACLE, GapKind.PRESENCE):
         return words
     name = re.sub(r"^(?:the|a|an) ", "", plain(question.gaps[0].description))
+    if " " not in name:
+        return words  # a mere ``smoke`` may be the start of other words: ``smoke machine``
     parts = _TAIL.match(name)
-    whole = [re.escape(name)]
-    short = re.escape(name)
-    if parts is not None:
-        short = re.escape(parts["head"])
-        whole.append(rf"(?:one|{short.split(' ')[-1]}) {re.escape(parts['tail'])}")
-    called = rf"\b(?:the|that|this) (?:{'|'.join(whole)}|{short}(?! {PREPOSITION} ))(?!\w)"
+    head, tail = (parts["head"], parts["tail"]) if parts else (name, "")
+    whole = [name, *(f"{noun} {tail}" for noun in ("one", head.split()[-1]) if tail)]
+    short = head if " " in head else name
+    called = rf"\b(?:the|that|this) (?:{'|'.join(map(re.escape, whole))}|{re.escape(short)}(?! {PREPOSITION} ))(?!\w)"
     if question.gaps[0].kind is GapKind.PRESENCE:
         words = re.sub(rf"\b(?:in|inside|within) {called}", "inside", words)
     return re.sub(called, "it", words)

@@ -83,7 +83,7 @@ _ENDING = frozenset(
     tuple(phrase.split())
     for phrase in (
         "it is", "it does", "i do", "you can", "you may", "you should",
-        "please do", "that is", "it should", "bang on", "dead on",
+        "please do", "that is", "it should", "bang on", "dead on", "absolutely not", "of course not",
     )
 )  # fmt: skip
 _JUDGING = frozenset((("good",), ("fine",)))
@@ -134,7 +134,9 @@ def atoms(words: str, about: GapKind, known: frozenset[str] = frozenset()) -> li
             continue
         phrase = next((p for p in index.get(token, ()) if _fits(p, tokens, at, _kinds(about)[p])), None)
         if phrase is not None:
-            found.append(Atom(_kinds(about)[phrase], " ".join(phrase)))
+            kind = _kinds(about)[phrase]
+            is_asked = kind is Kind.STRANGE and known.issuperset(phrase)
+            found.append(Atom(Kind.NOISE if is_asked else kind, " ".join(phrase)))
             at += len(phrase)
             continue
         mended = _mend(token, about) if token not in known else None

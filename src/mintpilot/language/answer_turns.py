@@ -8,14 +8,16 @@ from dataclasses import dataclass
 ECHO = re.compile(r"^(?:\w+ ){1,2}\? (?=\w)")
 """The question's word thrown back, before the answer: ``safe? it is burning``."""
 OPPOSITE = re.compile(
-    r"^(?:(?:yes|yeah|yep|yup|ok|right|sure|well|all ?right|true|exactly|of course|correct)[ ,.;!]+)+"
+    r"^(?:(?:yes|yeah|yep|yup|ok|right|sure|well|al?l ?right|true|exactly|of course|correct)[ ,.;!]+)+"
     r"(?:(?:i|we) (?:have )?(?:just )?(?:checked|looked|know)(?: it)?[ ,.;!]+)?"
-    r"(?=(?:it|that|this|the \w+|that one|this one) (?:is|was|has)\b(?! (?:was|not a problem))"
-    r"|there is (?:\w+ly )?(?:nobody|no one|noone|not any|no people)|(?:nobody|no one|noone)\b|not (?:safe|that|this|it)\b)"
+    r"(?=(?:it|that|this|the \w+|that one|this one) (?:is|was|has)\b"
+    r"|there is (?:\w+ly )?(?:nobody|no one|noone|not any|no people)|(?:nobody|no one|noone)\b"
+    r"|not (?:safe|that|this|it)\b)"
 )
 """A yes-word before a statement of its own, which outweighs it where it is the opposite: ``yes, it is toxic``."""
 CORRECTION = re.compile(
-    r"\b(?:actually|no wait|wait no(?= \w)|(?<!what )i mean(?! it\b)|(?<!what )i meant|sorry|correction|scratch that|strike that"
+    r"\b(?:actually|no wait|wait no(?= \w)|(?<!what )i mean(?! it\b)|(?<!what )i meant|sorry|correction"
+    r"|scratch that|strike that"
     r"|cancel that|belay that"
     r"|disregard that|make that|on second thoughts?|changed my mind|wait(?= (?:no|yes)\b)|(?:hang|hold) on"
     r"(?= (?:no|yes)\b)|no sorry|rather(?= the\b))\b"
@@ -51,8 +53,8 @@ _STATEMENT = re.compile(
 """How something new begins that is said of the world: no mere ``but toxic``, ``but only if``."""
 _OF_IT = re.compile(r"(?:(?:yes|yeah|no|well|oh|ok|so)[ ,]+)*(?:it|that|this) (?:was|used|had|is)\b")
 _LOOKS = re.compile(
-    r"(?:(?:yes|no|well|oh|ok|so)[ ,]+)*(?:it|that|this|the \w+) (?:may |might )?(?:looks?|seems?|smells?|sounds?|appears?)"
-    r"(?: \w+){1,2}"
+    r"(?:(?:yes|no|well|oh|ok|so)[ ,]+)*(?:it|that|this|the \w+) (?:may |might )?"
+    r"(?:looks?|seems?|smells?|sounds?|appears?)(?: \w+){1,2}"
 )
 _GO_ON = re.compile(r"\b(?:go|fly|head|pass|come)(?: on| right| straight)? (?:through|ahead|in|on)\b|\bproceed\b")
 _WAS = re.compile(r"\b(?:was|were|used to|had been|had)\b")

@@ -168,7 +168,8 @@ ATTITUDES: dict[Kind, str] = {
         wonderful idea|lovely idea|what could go wrong|what could possibly go wrong|good luck|good luck with that|
         say goodbye|kidding|just kidding|joking|just joking|joke|funny|very funny|haha|ha ha|hahaha|lol|lmao|rofl|
         lmfao|lose|lose another|sure jan|bonfire|barbecue|barbeque|bbq|roast|roasted|grill|kamikaze|hero|my ass|
-        never come back|never return|my arse|said no one ever|said nobody ever|clear as mud|safe as houses|dandy|what a surprise|whoopee|
+        never come back|never return|my arse|
+        said no one ever|said nobody ever|clear as mud|safe as houses|dandy|what a surprise|whoopee|
         because that always works|like a hole|famous last words|psych|sike|ironic|sarcasm|yeah nah|nah yeah|oh great|
         oh wonderful|oh perfect|oh brilliant|oh fantastic|just great|just perfect|just wonderful|just what we need|
         burn the drone|queen|king|pope|santa|father christmas|easter bunny|tooth fairy|napoleon|superman|fried|crispy|

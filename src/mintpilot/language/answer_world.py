@@ -29,6 +29,7 @@ PRODUCTS: tuple[tuple[Kind, str, str], ...] = (
         "nothing|nothing there|nothing in there|nothing in it",
         "can hurt you|will hurt you|can harm you|will harm you|that can hurt you|that could hurt you|to hurt you",
     ),
+    (Kind.UNSURE, "safe to fly|safe to go|safe to pass|safe to move", "over|above|past|by|under|below"),
     (Kind.UNSURE, "open|wide", "about|by"),
     (Kind.UNSURE, "open", "mind|your|question|secret|to"),
     (Kind.CONDITION, "in|for", "about|two|three|four|five|ten|twenty|a few|half|an hour|another"),

@@ -41,8 +41,16 @@ _OF_ANOTHER = re.compile(
     r"|yeah)\b)\w+ (?:is|are|was|were)(?: all)?)$"
 )
 """What before a colour makes it one of something else: ``next to the red …``, ``my jacket is …``."""
-_TOLD = re.compile(r"with (?:envy|jealousy|rage|anger|shame|age)\b|\w+ (?:is|was|has|are|were) (?!(?:it|the|right|correct|mine|what|that|fine|good|ok)\b)\w")
+_TOLD = re.compile(
+    r"with (?:envy|jealousy|rage|anger|shame|age)\b"
+    r"|\w+ (?:is|was|has|are|were) (?!(?:it|the|right|correct|mine|what|that|fine|good|ok)\b)\w"
+)
 """What follows where a thing is only described: ``the red one is empty``."""
+_THINGS = tuple(
+    frozenset(group.split())
+    for group in ("box crate case container chest parcel", "barrel drum", "bag suitcase", "bottle can", "kit")
+)
+"""Nouns of things; those of two groups are never the same thing."""
 _FOLLOWERS = frozenset(
     word
     for words in (
@@ -160,6 +168,8 @@ def _runs(words: str, gap: KnowledgeGap) -> Iterator[str | set[str] | tuple[set[
         following = tokens[end] if end < len(tokens) else ","
         is_named = following in _FOLLOWERS | nouns or not following.isalpha()
         is_named &= _TOLD.match(" ".join(tokens[end:])) is None
+        if _is_other_thing(following, gap):
+            fits = set()
         if end > at and is_named and _OF_ANOTHER.search(" ".join(tokens[:at])) is None:
             yield fits
         else:
@@ -169,6 +179,13 @@ def _runs(words: str, gap: KnowledgeGap) -> Iterator[str | set[str] | tuple[set[
                 yield tokens[at]
             end = max(end, at + 1)
         at = end
+
+
+def _is_other_thing(noun: str, gap: KnowledgeGap) -> bool:
+    """Whether a noun is one for things of another sort than all candidates: a box among barrels."""
+    sorts = {group for group in _THINGS for c in gap.candidates if group & _words_of(c)}
+    named = [group for group in _THINGS if group & {noun, noun.removesuffix("s"), noun.removesuffix("es")}]
+    return bool(sorts and named) and named[0] not in sorts
 
 
 def _named(tokens: Sequence[str], at: int, gap: KnowledgeGap) -> set[str] | None:
