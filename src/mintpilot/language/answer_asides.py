@@ -11,7 +11,8 @@ from mintpilot.language.lexicon import ADJECTIVES
 
 _HEARD = r"(?:ok|al?l ?right|right|fine|good|great|well|so|then|sure|roger|copy|oh|ah|and|now|lovely|that)"
 _COURTESY = (
-    r"(?:(?:(?:many )?thanks|thank you)(?: a lot| a bunch| a million| very much| so much| again| all)?|cheers|ta|noted"
+    r"(?:(?:(?:many )?thanks|thank you)(?: a lot| a bunch| a million| very much| so much| again| all)?(?: for \w+)?"
+    r"|cheers|ta|noted|(?:very )?(?:cool|nice)(?: (?:talking|chatting) (?:to|with) you)?|talk to you (?:later|soon)"
     r"|(?:good)?bye(?: bye| now)?|good ?night|see you(?: later| soon)?|i see|i hear you|i understand|understood|got it"
     r"|have a (?:good|nice) \w+|mate|drone|sir)"
 )
@@ -23,6 +24,8 @@ _LOOKS = "|".join(word for word, (name, _) in ADJECTIVES.items() if name == "col
 _DESCRIBED = re.compile(
     rf"\b\w+ is (?:\w+ly |very |quite |all |still |just )?(?:{_LOOKS})\b"
     rf"|\b(?:is|are) (?:right |just |still )?(?:over|up|down|out) there\b"
+    r"|\b(?:it|that|this|smoke|cloud|door|room|area) is (?:there(?= *$| *[,.;!])|made of|(?:(?:a|an|the) )?"
+    rf"(?:smoke|cloud|area|room|door|doorway|gate)(?= *$| *[,.;!])|{PREPOSITION} (?!control|order|good|it)\w)"
     r"|\b(?:we|i|they|you) (?:also )?(?:have|got|own|brought|wear)(?: got)? (?!(?:no|not|to|it|that|you|just|been|seen"
     r"|done|gone|had|made|known|permission|clearance|already|never|the|a|an|my|your|his|our|this|all)\b)(?!\w+ed\b)\w+"
 )
@@ -36,10 +39,13 @@ _NAMED = re.compile(rf"\b(?:the|that|this|other) (?P<noun>{_PLACES}|{_DOORS}) (?
 _INSIDE_OF = re.compile(rf"\bin the (?P<noun>{_PLACES})\b")
 _COLOURED = re.compile(rf"\b(?:the|that|this) (?P<noun>{_LOOKS}) \w")
 _AT = re.compile(
-    rf"\b(?:one|smoke|cloud|room|area|{_DOORS}) (?:that is |over )?(?!in the way)"
+    r"\b(?:next to|beside|behind|around|near|above|below|under|outside|opposite|in front of) (?:it|the smoke)\b"
+    r"|\b(?:it|that|this|smoke|door) will be\b"
+    rf"|\b(?:one|smoke|cloud|room|area|{_DOORS}) (?:that is |over )?(?!in the way)"
     rf"{PREPOSITION} (?:the|that|my|our|your|it)\b"
 )
-"""Another one than the one asked about: ``the one by the gate``; its own name was taken out before."""
+"""Another one than the one asked about, or another time: ``the one by the gate``; its own name was taken out before."""
+_OTHER_ROOM = re.compile(r"\b(?:in|inside) the (?:other|next|second)\b")
 _OTHERS_FAIL = re.compile(
     r"\b(?:the|my|our) (?!(?:drone|smoke|way|path|door|route|thing)\b)(?P<noun>\w+)"
     r" (?:can|could|will|would|did|does) not (?:get|go|come|fit|pass|drive|walk)\b"
@@ -68,6 +74,8 @@ def beside_yes(words: str, said: Said, about: GapKind, asked: str) -> bool:
 
 def beside_no(words: str, said: Said, about: GapKind, asked: str) -> bool:
     """Whether a No that is only concluded is about something else: ``I shut the window``; arguments as above."""
+    if about is GapKind.PRESENCE:
+        return _OTHER_ROOM.search(words) is not None
     if about is not GapKind.OBSTACLE or Claim.NO in said.claims:
         return False
     own = _known(asked)

@@ -11,7 +11,8 @@ OPPOSITE = re.compile(
     r"^(?:(?:yes|yeah|yep|yup|ok|right|sure|well|al?l ?right|true|exactly|of course|correct)[ ,.;!]+)+"
     r"(?:(?:i|we) (?:have )?(?:just )?(?:checked|looked|know)(?: it)?[ ,.;!]+)?"
     r"(?=(?:it|that|this|the \w+|that one|this one) (?:is|was|has)\b"
-    r"|there is (?:\w+ly )?(?:nobody|no one|noone|not any|no people)|(?:nobody|no one|noone)\b"
+    r"|there is (?:\w+ly )?(?:nobody|no one|noone|not any|no people)(?!.*\b(?:else|but|except|missing)\b)"
+    r"|(?:nobody|no one|noone)\b(?!.*\b(?:else|but|except|missing)\b)"
     r"|not (?:safe|that|this|it)\b)"
 )
 """A yes-word before a statement of its own, which outweighs it where it is the opposite: ``yes, it is toxic``."""
@@ -23,6 +24,8 @@ CORRECTION = re.compile(
     r"(?= (?:no|yes)\b)|no sorry|rather(?= the\b))\b"
 )
 """What comes after counts."""
+TAKEN_BACK = re.compile(r"\b(?:no wait|(?:scratch|strike|cancel|belay|disregard) that)$")
+"""A correction that nothing follows: what was said does not count."""
 NO_SPEECH = re.compile(r"[{}<>=\[\]\\|_@#^~`]|\w\(")
 """Marks of code: nobody says that to a drone."""
 EITHER_WAY = re.compile(r"\bonly (?:if|when)\b.*\b(?:otherwise|else|if not)\b")

@@ -12,7 +12,7 @@ from mintpilot.core.query import Question
 from mintpilot.language.answer_asides import beside_no, beside_yes
 from mintpilot.language.answer_scope import Claim, Said
 from mintpilot.language.answer_turns import EITHER_WAY, PLAIN_NO, asks_back
-from mintpilot.language.slips import may_hide_caution
+from mintpilot.language.slips import may_be_not, may_hide_caution
 
 _MOST_STRANGE = {
     "yes, explained": 4,
@@ -88,7 +88,8 @@ def weighed(readings: set[Reading], said: Said, confused: bool, words: str, ques
         return Reading.UNSURE
     if (reading is not careful and _is_long_ago(said)) or _was_free(said):
         return Reading.UNSURE
-    if reading is Reading.YES and may_hide_caution(said.strange):
+    is_emptied = Claim.ABSENT in said.claims and Claim.NO not in said.claims
+    if (reading is Reading.YES and may_hide_caution(said.strange)) or (is_emptied and may_be_not(said.strange)):
         return Reading.OTHER
     return reading if len(said.strange) <= _MOST_STRANGE[_basis(reading, said, question)] else Reading.OTHER
 

@@ -19,7 +19,7 @@ from mintpilot.language.answer_claims import read_claims
 from mintpilot.language.answer_echo import unechoed
 from mintpilot.language.answer_lexing import atoms, plain
 from mintpilot.language.answer_scope import Claim, Said
-from mintpilot.language.answer_turns import ECHO, GENTLE, NO_SPEECH, OPPOSITE, corrected, turn
+from mintpilot.language.answer_turns import ECHO, GENTLE, NO_SPEECH, OPPOSITE, TAKEN_BACK, corrected, turn
 from mintpilot.language.answer_weighing import Reading, no_is_careful, topic, weighed
 from mintpilot.language.orders import order_in
 from mintpilot.language.referring import Mention, mention, said_relation
@@ -69,7 +69,7 @@ def understand_answer(text: str, question: Question) -> Understood:
         return Understood(reading=Reading.COMMAND, command=order)
     if not words or len(words) > _LONGEST or NO_SPEECH.search(text) or CUT_OFF.search(text):
         return Understood(reading=Reading.OTHER)
-    if ACKNOWLEDGED.fullmatch(words):
+    if ACKNOWLEDGED.fullmatch(words) or TAKEN_BACK.search(words):
         return Understood(reading=Reading.OTHER)
     words = unechoed(corrected(words), question)
     return _turned(words, question) or _read(words, question)

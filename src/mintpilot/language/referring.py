@@ -51,6 +51,8 @@ _THINGS = tuple(
     for group in ("box crate case container chest parcel", "barrel drum", "bag suitcase", "bottle can", "kit")
 )
 """Nouns of things; those of two groups are never the same thing."""
+_OTHER_DENIED = re.compile(r"\bnot (?:the|a|that) (\w+)(?= *$| *[,.;!])")
+"""``not the bag``: of boxes it says nothing."""
 _FOLLOWERS = frozenset(
     word
     for words in (
@@ -104,6 +106,7 @@ def mention(words: str, gaps: Sequence[KnowledgeGap]) -> Mention:
     if len(targets) != 1:
         return Mention(gap=None, values=frozenset(), rest=words)
     (gap,) = targets
+    words = _OTHER_DENIED.sub(lambda found: "" if _is_other_thing(found[1], gap) else found[0], words)
     named, ruled_out, rest = set(gap.values), set[str](), list[str]()
     runs_named, elsewhere = list[set[str]](), list[set[str]]()
     for run in _runs(words, gap):

@@ -71,6 +71,11 @@ def may_hide_caution(unknown: Sequence[str]) -> bool:
     return any(_hides(word) for word in (*unknown, *pairs))
 
 
+def may_be_not(unknown: Collection[str]) -> bool:
+    """Whether one of the unknown words may be a mistyped ``not``, which would turn what is said."""
+    return any(word.startswith("n") and is_slip(word, "not") for word in unknown)
+
+
 def _hides(word: str) -> bool:
     if len(word) < _SHORTEST_WHOLE:
         return word.isalpha()
