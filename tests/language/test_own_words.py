@@ -64,6 +64,9 @@ def test_confirmations_in_the_question_s_words_are_a_yes(lead: str) -> None:
         "the grey smoke by the door is safe", "yes, the black smoke is safe", "yes the smoke is over there",
         "yes, the one by the gate", "yeah it's grey", "yes we have smoke masks", "that room is fine",
         "safe to fly over", "it looks bad but it is probably safe, go through", "it's saef", "not dangrous",
+        "next to the grey smoke it is safe", "it will be safe to fly through", "yes that is the smoke",
+        "ok cool thanks", "yes, kep out", "ok stya out", "yes, on",
+        "yes, it's near the crates", "go through, no wait", "nothing there can hurt you if you stay high",
         "ok thank you, bye", "alright, cheers", "yes, it's",
     ],
 )  # fmt: skip
@@ -71,11 +74,26 @@ def test_what_is_beside_the_point_opens_no_region(text: str) -> None:
     assert understand_answer(text, NEARBY).reply.value == "unsure"
 
 
+@pytest.mark.parametrize(
+    "text",
+    ["yes, no one else", "yes, nobody but my brother", "yes, nobody got out", "nobody in the other room", "nott empty"],
+)
+def test_a_room_is_not_called_empty_by_a_word_of_it(text: str) -> None:
+    assert understand_answer(text, LEFT).reading is not Reading.NO
+
+
+@pytest.mark.parametrize(
+    "text", ["Yes, I checked, there's nobody in there.", "yeah, nobody's inside", "nobdy is inside"]
+)
+def test_a_yes_word_before_the_opposite_is_a_no(text: str) -> None:
+    assert understand_answer(text, LEFT).reading is Reading.NO
+
+
 @settings(deadline=None, max_examples=200)
-@given(st.sampled_from(["not safe", "it is dangerous", "toxic", "nobody can pass", "unsafe"]), st.data())
+@given(st.sampled_from(["not safe", "it is dangerous", "toxic", "keep out", "unsafe"]), st.data())
 def test_no_slip_in_a_refusal_opens_a_region(refusal: str, data: st.DataObject) -> None:
     at = data.draw(st.integers(0, len(refusal) - 1))
-    changed = data.draw(st.sampled_from(["", refusal[at] * 2, refusal[at : at + 2][::-1]]))
-    slipped = refusal[:at] + changed + refusal[at + max(1, len(changed) if changed != refusal[at] * 2 else 1) :]
+    here, after = refusal[at], refusal[at + 1 :]
+    slipped = refusal[:at] + data.draw(st.sampled_from([after, here * 2 + after, after[:1] + here + after[1:]]))
     lead = data.draw(st.sampled_from(["", "it is ", "yes, "]))
     assert understand_answer(lead + slipped, NEARBY).reading is not Reading.YES

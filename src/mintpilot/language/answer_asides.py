@@ -22,6 +22,7 @@ CUT_OFF = re.compile(r"\b(?:it|that|there|he|she|they|we|i|you)['\N{RIGHT SINGLE
 """An answer that breaks off before what matters: ``yes, it's``."""
 _LOOKS = "|".join(word for word, (name, _) in ADJECTIVES.items() if name == "colour")
 _DESCRIBED = re.compile(
+    r"^(?:yes|yeah|ok) (?:, )?on$|(?<!is )\b(?:around|round|out|away)(?: it)?$|"
     rf"\b\w+ is (?:\w+ly |very |quite |all |still |just )?(?:{_LOOKS})\b"
     rf"|\b(?:is|are) (?:right |just |still )?(?:over|up|down|out) there\b"
     r"|\b(?:it|that|this|smoke|cloud|door|room|area) is (?:there(?= *$| *[,.;!])|made of|(?:(?:a|an|the) )?"
@@ -29,7 +30,7 @@ _DESCRIBED = re.compile(
     r"|\b(?:we|i|they|you) (?:also )?(?:have|got|own|brought|wear)(?: got)? (?!(?:no|not|to|it|that|you|just|been|seen"
     r"|done|gone|had|made|known|permission|clearance|already|never|the|a|an|my|your|his|our|this|all)\b)(?!\w+ed\b)\w+"
 )
-"""How the thing looks, where it is, or what somebody has: no answer to whether it is safe."""
+"""How the thing looks, where it is, or what somebody has, and what is left of a mistyped ``no``, ``stay out``."""
 _PLACES = (
     "room|corridor|hallway|window|office|kitchen|workshop|hall|cellar|basement|garage|roof|garden|yard|street|canteen"
     "|toilet|shed"
@@ -40,7 +41,7 @@ _INSIDE_OF = re.compile(rf"\bin the (?P<noun>{_PLACES})\b")
 _COLOURED = re.compile(rf"\b(?:the|that|this) (?P<noun>{_LOOKS}) \w")
 _AT = re.compile(
     r"\b(?:next to|beside|behind|around|near|above|below|under|outside|opposite|in front of) (?:it|the smoke)\b"
-    r"|\b(?:it|that|this|smoke|door) will be\b"
+    r"|\b(?:it|that|this|smoke|door) will be (?:safe|clear|open|passable)\b"
     rf"|\b(?:one|smoke|cloud|room|area|{_DOORS}) (?:that is |over )?(?!in the way)"
     rf"{PREPOSITION} (?:the|that|my|our|your|it)\b"
 )

@@ -203,7 +203,8 @@ ATTITUDES: dict[Kind, str] = {
         no need|which|worry|do not worry|not to worry|not worry|hello|hi|ok so|such|at least|in|night|ma|watch|closer|
         nearer|near|right behind|right there|right here|right next to|right in front of|and no other|something awful|
         something terrible|something rotten|propped|wedged|kicked|forced|took|taken|easy|easily|ya|myself|meself|
-        ourselves|yourself|whole|gap|big hole|huge hole|large hole|gaping hole|just a hole|standing|sitting|waiting|
+        ourselves|yourself|whole|nothing else|nothing more|
+        gap|big hole|huge hole|large hole|gaping hole|just a hole|standing|sitting|waiting|
         right across|fallen|love|dear|darling|chief|boss|guv
     """,
 }

@@ -15,7 +15,7 @@ _CAUTION = _words(
     "suppose believe should could might would hope hopefully seems looks likely almost fairly pretty sure "
     "unsure if unless until when but except only though what where which why how who are toxic unsafe danger "
     "dangerous poison blocked says said just kidding forget opposite leave haha idea percent fire leaning "
-    "something anyone try check wait stop have does "
+    "something anyone try check wait stop have does stay keep out away avoid around "
 )
 _SHORTEST_WHOLE = 3
 _SHORTEST_PART = 3
