@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Sequence
 
 from mintpilot.core.gap import GapKind
@@ -24,6 +25,10 @@ _OF_PEOPLE_TOO = _words("stuck hurt awful terrible bad horrible nasty lousy hot 
 """Of the dangers, those that are none of the way where ``we`` or ``my brother`` is."""
 
 
+_DONE = frozenset(("searched", "searched it", "checked", "looked", "been", "seen", "heard"))
+_CONFIRMING = re.compile(r"confirm|\bsay yes\b|\baffirm\b")
+
+
 def read_claims(atoms: Sequence[Atom], about: GapKind) -> Said:
     """What an answer claims about the kind of thing that was asked."""
     return Scan(about, _HANDLERS).read(atoms)
@@ -38,6 +43,12 @@ def _strange(scan: Scan, atom: Atom) -> None:
     scan.part.strange += 1
 
 
+def _yes(scan: Scan, atom: Atom) -> None:
+    """``I can not confirm it`` is no No."""
+    denied = Claim.UNSURE if _CONFIRMING.search(atom.text) else Claim.NO
+    scan.claim(denied if scan.part.negated else Claim.YES)
+
+
 def _boost(scan: Scan, atom: Atom) -> None:
     if not scan.part.negated:
         scan.part.claims.add(Claim.BOOST)
@@ -47,6 +58,7 @@ def _boost(scan: Scan, atom: Atom) -> None:
 
 
 def _know(scan: Scan, atom: Atom) -> None:
+    scan.part.exists &= atom.text not in _DONE  # ``we have searched it``: no ``we have people``
     if scan.part.negated or (scan.part.bare is Kind.NOBODY and atom.text != "been"):
         deny_knowing(scan)
 
@@ -72,9 +84,11 @@ def _very(scan: Scan, _: Atom) -> None:
     scan.part.soft |= scan.part.negated
 
 
-def _agree(scan: Scan, _: Atom) -> None:
+def _agree(scan: Scan, atom: Atom) -> None:
     """``we are fine`` is no consent."""
     denied, other = scan.part.negated, scan.part.of_others
+    if atom.text in ("good", "fine") and scan.about is GapKind.OBSTACLE and Claim.YES not in scan.said.claims:
+        other |= scan.part.strange > 0  # the weather is fine
     scan.claim(Claim.NO if denied else Claim.UNCLEAR if other else Claim.AGREE)
 
 
@@ -149,7 +163,7 @@ def _clear(scan: Scan, atom: Atom) -> None:
 
 _HANDLERS: dict[Kind, Callable[[Scan, Atom], None]] = {
     **PEOPLE,
-    Kind.YES: _claims(Claim.YES, Claim.NO), Kind.NO: _claims(Claim.NO, Claim.UNCLEAR), Kind.ELSEWHERE:
+    Kind.YES: _yes, Kind.NO: _claims(Claim.NO, Claim.UNCLEAR), Kind.ELSEWHERE:
     _claims(Claim.UNCLEAR, Claim.UNCLEAR), Kind.UNSURE: _claims(Claim.UNSURE, Claim.UNSURE), Kind.RISK:
     _claims(Claim.UNSURE, Claim.NO), Kind.AROUND: _claims(Claim.AWAY, Claim.UNCLEAR), Kind.STRANGE: _strange,
     Kind.BOOST: _boost, Kind.NOT: lambda scan, _: deny(scan), Kind.KNOW: _know, Kind.THINK: _doubt, Kind.LIKELY: _doubt,

@@ -47,6 +47,11 @@ _OPEN = (
     (r"(?<!is)(?<!re)(?<!be)(?<!yeah)(?<!yes)(?<!oh)(?<!looks)(?<!seems)(?<!it)(?<!all)(?<!the)(?<!on)(?<!to)"
      r"(?<=\w) (?:ok|okay|right)$", ""),
     (r"\bcan ?n[o']t\b|\bcant\b|\bcannot\b|\bcan't\b", "can not"), (r"\bwon'?t\b", "will not"),
+    (r"\bvisibility(?=(?: and \w+)? (?:is|are|looks) (?:all |very |perfectly )?"
+     r"(?:fine|good|ok|great|normal|perfect)\b)", "measurement"),
+    (r"^(yes|yeah|yep|no|nope|nah|negative|affirmative)[ ,]+(?:my (?:dear|love|darling|friend|boy|girl|lad)|sweetheart"
+     r"|honey|hon|darling|sugar|pet|doctor|nurse|officer|captain|bro|bruv|guys|madam|ma'am)(?=\s*[,.!])", r"\1"),
+    (r"^(?:ja|jawohl|oui|s[i\N{LATIN SMALL LETTER I WITH ACUTE}]|da)(?= *$|[,.!]| yes\b)", "yes"),
     (r"\bcould not (?=(?:get|find|reach|leave|make it)\b)", "can not "),
     (r"\bshan'?t\b", "shall not"), (r"\bain'?t\b", "is not"), (r"\b(\w+)n't\b", r"\1 not"),
     (r"\b(do|does|did|is|are|was|were|has|have|had|would|could|should|must|need)nt\b", r"\1 not"),
@@ -90,8 +95,21 @@ _JUDGING = frozenset((("good",), ("fine",)))
 """Consent only where they are the whole of what is said: not in ``good morning``."""
 _AFTER_JUDGING = frozenset(["to", "go", "by", "with", "then", "now", "thanks", "so", "for", "we", "you", "just"])
 _AUXILIARY = frozenset(["can", "may", "should", "is", "are", "do", "does", "did", "will", "would", "could", "must"])
-_TELLING = frozenset(["is", "was", "has", "had", "are"])
-"""What makes no consent of ``that one``: ``that one is full of nails``."""
+_AFTER_ONE = frozenset(
+    word
+    for words in (
+        "yes yeah please there right here thanks thank then now sir mate love dear i we it that you and",
+        "exactly definitely for over with by on in next near behind beside under of to from at such as indeed",
+        "not no",
+        ", . ; ! ?",
+    )
+    for word in words.split()
+)
+"""What may follow ``that one`` as consent; ``that one is full of nails`` is none."""
+_BEFORE_ON_IT = frozenset(["am", "are", "is", ",", ".", ";", "!", "?"])
+"""What stands before ``on it`` where it asks for time; not in ``the one with a label on it``."""
+_OFF_COURSE = frozenset(["around", "round", "past", "away", "back", "elsewhere", "another"])
+"""What makes no consent of ``please go``: ``please go around it``."""
 _SHORTEST_MENDED = 6
 _MENDED = frozenset((Kind.DANGER, Kind.HAZARD, Kind.NO, Kind.CONDITION, Kind.NOBODY))
 _MENDED_LONG = _MENDED | {Kind.UNSURE, Kind.SAFE, Kind.YES, Kind.BOOST, Kind.LIKELY, Kind.EMPTY}
@@ -157,8 +175,11 @@ def _fits(phrase: tuple[str, ...], tokens: list[str], at: int, kind: Kind) -> bo
     is_denied = (
         kind in (Kind.YES, Kind.AGREE, Kind.BOOST) and tokens[end : end + 1] == ["not"] and phrase[-1] in _AUXILIARY
     )
-    is_told = kind is Kind.YES and phrase[-1] == "one" and not ends and tokens[end] in _TELLING
-    return not (is_denied or is_told)
+    is_told = phrase[-1] == "one" and len(phrase) == 2 and not ends and tokens[end] not in _AFTER_ONE
+    is_told &= kind is Kind.YES
+    is_part = phrase == ("on", "it") and at > 0 and tokens[at - 1] not in _BEFORE_ON_IT
+    is_sent_off = kind is Kind.AGREE and phrase[-1] == "go" and tokens[end : end + 1] and tokens[end] in _OFF_COURSE
+    return not (is_denied or is_told or is_part or is_sent_off)
 
 
 @cache

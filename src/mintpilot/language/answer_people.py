@@ -15,7 +15,7 @@ def _person(scan: Scan, _: Atom) -> None:
         part.negated = False
         part.subject = part.bare = Kind.NOBODY
         if part.perceived:
-            scan.claim(Claim.UNSURE)
+            scan.claim(Claim.UNSEEN)
         return
     part.strange += part.tells
     part.subject = part.bare = Kind.PERSON
@@ -41,7 +41,7 @@ def _nobody(scan: Scan, _: Atom) -> None:
     elif part.negated:
         scan.claim(Claim.UNCLEAR)
     elif part.perceived:
-        scan.claim(Claim.UNSURE)
+        scan.claim(Claim.UNSEEN)
     else:
         part.subject = part.bare = Kind.NOBODY
 

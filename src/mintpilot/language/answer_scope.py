@@ -27,6 +27,8 @@ class Claim(StrEnum):
     PRESENT = "present"
     ABSENT = "absent"
     UNSURE = "unsure"
+    UNSEEN = "unseen"
+    """Nobody was seen or heard, which alone does not say that nobody is there."""
     UNCLEAR = "unclear"
     """It says something that cannot be relied on: doubly negated, or about something else."""
     EITHER = "either"
@@ -133,8 +135,18 @@ class Scan:
         elif atom.kind in self._handlers:
             before = set(self.said.claims)
             self._handlers[atom.kind](self, atom)
-            if atom.is_mended and self.about is GapKind.OBSTACLE and (self.said.claims - before) & _OPENING:
-                self.claim(Claim.UNCLEAR)
+            if atom.is_mended and self.about is GapKind.OBSTACLE and (opened := (self.said.claims - before) & _OPENING):
+                self._leave_out(opened, atom)
+
+    def _leave_out(self, opened: set[Claim], atom: Atom) -> None:
+        """A mended word opens no way: after a Yes it is one more unknown word, else it leaves the answer unclear."""
+        if Claim.YES not in self.said.claims - opened:
+            self.claim(Claim.UNCLEAR)
+            return
+        self.said.claims -= opened
+        self.part.claims -= opened
+        self.said.strange.append(atom.text)
+        self.part.strange += 1
 
     def _subject(self, kind: Kind, following: Kind) -> None:
         """A new subject with its verb ends the reach of a negation, but for one that is passed on."""
@@ -164,8 +176,11 @@ class Scan:
         self._denied_before = part.rules_out or (part.denied and Claim.PRESENT in part.claims)
         if not part.claims - {Claim.BOOST}:
             self._settle_bare(part)
-        if part.negated:
-            self.claim(Claim.NO)
+        if part.negated:  # ``not all of them`` says nothing of the rest
+            is_told = part.of_others and part.strange and self.about is GapKind.PRESENCE  # I can not breathe
+            is_part = part.subject is Kind.EVERYBODY
+            unclear = is_part or (is_told and Claim.NO not in self.said.plain)
+            self.claim(Claim.UNCLEAR if unclear else Claim.NO)
         if part.soft and self.about is GapKind.OBSTACLE:  # yes, slightly
             self.any_doubt = True
         self.said.is_clean |= bool(part.claims & _WORLD) and not (part.strange or part.doubted)

@@ -5,9 +5,11 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
-ECHO = re.compile(r"^(?:\w+ ){1,2}\? (?=\w)")
+from mintpilot.core.gap import GapKind
+
+_ECHO = re.compile(r"^(?:\w+ ){1,2}\? (?=\w)")
 """The question's word thrown back, before the answer: ``safe? it is burning``."""
-OPPOSITE = re.compile(
+_OPPOSITE = re.compile(
     r"^(?:(?:yes|yeah|yep|yup|ok|right|sure|well|al?l ?right|true|exactly|of course|correct)[ ,.;!]+)+"
     r"(?:(?:i|we) (?:have )?(?:just )?(?:checked|looked|know)(?: it)?[ ,.;!]+)?"
     r"(?=(?:it|that|this|the \w+|that one|this one) (?:is|was|has)\b"
@@ -16,6 +18,28 @@ OPPOSITE = re.compile(
     r"|not (?:safe|that|this|it)\b)"
 )
 """A yes-word before a statement of its own, which outweighs it where it is the opposite: ``yes, it is toxic``."""
+_ACKNOWLEDGING = re.compile(
+    r"^(?:(?:roger(?: that)?|copy(?: that)?|ok|right|al?l ?right|understood|got it|well|listen|look|so)[ ,.;!]+)+"
+    r"(?:(?:but|so|listen|look|well)[ ,]+)*(?=(?:it|that|this|there|they|we|the|is|negative|nope|no|not|nobody|find"
+    r"|take|go|stay|keep|avoid|do not)\b)"
+)
+"""What only tells that the question was heard, before a No: ``roger, but negative``."""
+_TELLS_EMPTY = re.compile(r"negative\b|(?:there is )?(?:nobody|no one)\b|(?:it|that|the \w+) is (?:\w+ )?empty\b")
+_LEADING_NO = re.compile(
+    r"^(?:(?:no|nope|nah|negative)(?: (?:no|sorry|please|thanks|thank you|sir|dear|love|mate))* [,.;!] )+(?=\w)"
+)
+"""A plain No with a break after it; what follows may say the same again."""
+_CONFIRMS = re.compile(r"\b(?:confirm|confirmed|say yes|affirm)\b")
+_GIVING = frozenset(
+    word
+    for words in (
+        "i we can do would hereby gladly happily yes yeah ok right roger copy also definitely absolutely",
+        "certainly sure and then so just now it",
+    )
+    for word in words.split()
+)
+"""All that may stand before ``confirm`` where it is one: ``I can confirm``, not ``the lab must confirm``."""
+_NOT_YET = frozenset(["be", "being", "half", "partly", "partially", "almost", "nearly", "yet", "once", "to"])
 CORRECTION = re.compile(
     r"\b(?:actually|no wait|wait no(?= \w)|(?<!what )i mean(?! it\b)|(?<!what )i meant|sorry|correction"
     r"|scratch that|strike that"
@@ -47,6 +71,10 @@ ASKS = re.compile(
 )
 NOT_ASKED = re.compile(
     r"\bwhy (?:not|would it not)\b|\b(?:which one|what was that|how should i know|how would i know|how am i)\b"
+    r"|(?:^|[,.;] )is not (?:it|that|this|these|those)(?: one)?(?= *$| *[,.;!])"
+    r"|^is (?:not )?the [^,]*(?=, (?:yes|yeah|no)$)"
+    r"|^(?:yes|yeah|ok|no|nope)(?: (?:yes|no))?[ ,.;!]+is (?:(?:it|that|this|these|those)(?: one)?(?= *$| *[,.;!])"
+    r"|(?:some|no)(?:body|one)\b|not any(?:body|one)\b)"
     r"|\bare you (?:crazy|mad|insane|nuts|kidding|serious|out of your mind)\b|\bhave you lost your mind\b|\bwhat the\b"
 )
 _STATEMENT = re.compile(
@@ -96,6 +124,30 @@ def turn(words: str) -> Turn | None:
         only_looks=_LOOKS.fullmatch(before.strip(" ,")) is not None,
         goes_on=_GO_ON.search(after) is not None,
     )
+
+
+def settled(words: str) -> str:
+    """The answer with every confirmation that is still to be given, or is another's, as ``unconfirmed``."""
+    return _CONFIRMS.sub(lambda found: found[0] if _is_given(found, words) else "unconfirmed", words)
+
+
+def _is_given(found: re.Match[str], words: str) -> bool:
+    before = re.split(r"[,.;!?]", words[: found.start()])[-1].split()
+    if found[0] == "confirmed":
+        return not before or before[-1] not in _NOT_YET
+    return _GIVING.issuperset(before)
+
+
+def lead(words: str, about: GapKind) -> re.Match[str] | None:
+    """The words before an answer's own statement that a No after them outweighs.
+
+    Of a room, an acknowledgement is outweighed only by words that tell it to be empty: not by ``ok, not yet``.
+    """
+    if found := _ECHO.match(words) or _OPPOSITE.match(words) or _LEADING_NO.match(words):
+        return found
+    found = _ACKNOWLEDGING.match(words)
+    is_told = about is not GapKind.PRESENCE or (found and _TELLS_EMPTY.match(words, found.end()))
+    return found if is_told else None
 
 
 def corrected(words: str) -> str:

@@ -66,7 +66,7 @@ def weighed(readings: set[Reading], said: Said, confused: bool, words: str, ques
     careful = Reading.NO if topic(question) is GapKind.OBSTACLE else None
     if Claim.UNSURE in said.claims or (said.waits and (not readings or readings == {Reading.YES})):
         return Reading.UNSURE
-    if not readings and said.is_hedged:
+    if (Claim.UNSEEN in said.claims and Claim.NO not in said.plain) or (not readings and said.is_hedged):
         return Reading.UNSURE
     if said.is_mockery and careful and said.claims >= {Claim.PASSABLE, Claim.BLOCKED} and not said.plain:
         return Reading.NO if no_is_careful(question) else Reading.OTHER

@@ -100,6 +100,7 @@ ATTITUDES: dict[Kind, str] = {
     """,
     Kind.VERY: "very|really|extremely|highly|super|so very|incredibly|terribly|damn|bloody|way|far|much|properly",
     Kind.UNSURE: """
+        unconfirmed|unable|not able|
         metre|metres|meter|meters|width|foot|feet|wing|open it|open that|open the door|open them|how would i know|
         how should i know|who am i to say|how am i supposed to know|the faintest|foggiest|do not get it|did not get it|
         do not get that|did not get that|do not understand|am not there|am not here|was not there|are not there|
@@ -181,7 +182,10 @@ ATTITUDES: dict[Kind, str] = {
         the smoke|the way|the path|the area|the room|the door|smoke|cloud|room|door|area|path|passage|route|gate|
         corridor|hallway|doorway|place|air|stuff|thing
     """,
-    Kind.PRONOUN: "i|we|he|she|they|who|my|our|his|firemen|firefighters|fireman|caretaker|janitor|foreman|crew",
+    Kind.PRONOUN: """
+        i|we|he|she|they|who|my|our|his|where we|where i|
+        where they|firemen|firefighters|fireman|caretaker|janitor|foreman|crew
+    """,
     Kind.VERB: """
         is|are|was|were|has|have|had|does|did|do|can|will|would|should|be|been|being|am|may|must|shall|got|has got
     """,
@@ -204,7 +208,7 @@ ATTITUDES: dict[Kind, str] = {
         nearer|near|right behind|right there|right here|right next to|right in front of|and no other|something awful|
         something terrible|something rotten|propped|wedged|kicked|forced|took|taken|easy|easily|ya|myself|meself|
         ourselves|yourself|whole|nothing else|nothing more|
-        gap|big hole|huge hole|large hole|gaping hole|just a hole|standing|sitting|waiting|
+        clear to me|clear on that|gap|big hole|huge hole|large hole|gaping hole|just a hole|standing|sitting|waiting|
         right across|fallen|love|dear|darling|chief|boss|guv
     """,
 }

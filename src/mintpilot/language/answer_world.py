@@ -36,6 +36,13 @@ PRODUCTS: tuple[tuple[Kind, str, str], ...] = (
     (Kind.ELSEWHERE, "i see|i can see|there is", "it|that|smoke|the smoke|the door|some smoke"),
     (Kind.THROUGH, "loads of|lots of|tons of|bags of|ample|heaps of|more than enough", "room|space"),
     (Kind.DANGER, "nothing|nobody|no one|noone", "gets through|gets past|can get through|fits through|comes through"),
+    (Kind.UNSURE, "nobody is|no one is|noone is", "safe|well|ok|fine|alive|happy"),
+    (
+        Kind.EVERYBODY,
+        "all my|all our|all the|all of my|all of our|all of the",
+        "patients|people|men|women|kids|children|boys|girls|guys|students|guests|residents|workers|colleagues|staff"
+        "|neighbours|tenants|visitors|friends|family|team|crew|lads",
+    ),
     (
         Kind.AGREE,
         "yeah|yes|yep|yup|sure|ok|aye",
@@ -84,7 +91,8 @@ STATES: dict[Kind, str] = {
         high voltage|electricity|sparks|sparking|restricted|off limits|out of bounds|forbidden|prohibited|no fly|
         no fly zone|no go|no go zone|no go area|no entry|banned|not allowed|mined|minefield|mines|bad|terrible|awful|
         horrible|nasty|lousy|scary|severe|hell|insane|crazy|madness|reckless|stupid|foolish|unwise|black smoke|
-        visibility|zero visibility|unbreathable|scalding|boiling|searing|scorching|dodgy|sketchy|iffy|treacherous|
+        visibility|zero visibility|too high|rising|extreme|reduced|limited|unbreathable|scalding|boiling|
+        searing|scorching|dodgy|sketchy|iffy|treacherous|
         perilous|volatile|leak|leaking|leaks|full of smoke|smouldering|smoldering|ruin|fry|fries|toast|lose the drone|
         lose it|never make it|would not make it|will not make it|not make it|stinks|smells|smell|reeks|warning|alarm|
         evil|worse|worst|impossible|no passage|dead end|no through road|no way through|smoky|stuck|blocking|blocks|
@@ -104,7 +112,8 @@ STATES: dict[Kind, str] = {
         exhaust of the humidifier|humidifier|a training smoke|training smoke|artificial smoke|drill|a drill
     """,
     Kind.CLEAR: """
-        clear|cleared|all clear|coast is clear|coast clear|the coast is clear|clear now|crystal clear|clearing
+        clear|cleared|all clear|coast is clear|coast clear|the coast is clear|clear now|crystal clear|clearing|
+        been cleared
     """,
     Kind.PERSON: """
         person|people|men|woman|women|child|children|kid|kids|boy|girl|baby|guy|guys|lady|a man|the man|one man|

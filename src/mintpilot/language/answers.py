@@ -19,7 +19,7 @@ from mintpilot.language.answer_claims import read_claims
 from mintpilot.language.answer_echo import unechoed
 from mintpilot.language.answer_lexing import atoms, plain
 from mintpilot.language.answer_scope import Claim, Said
-from mintpilot.language.answer_turns import ECHO, GENTLE, NO_SPEECH, OPPOSITE, TAKEN_BACK, corrected, turn
+from mintpilot.language.answer_turns import GENTLE, NO_SPEECH, TAKEN_BACK, corrected, lead, settled, turn
 from mintpilot.language.answer_weighing import Reading, no_is_careful, topic, weighed
 from mintpilot.language.orders import order_in
 from mintpilot.language.referring import Mention, mention, said_relation
@@ -71,7 +71,7 @@ def understand_answer(text: str, question: Question) -> Understood:
         return Understood(reading=Reading.OTHER)
     if ACKNOWLEDGED.fullmatch(words) or TAKEN_BACK.search(words):
         return Understood(reading=Reading.OTHER)
-    words = unechoed(corrected(words), question)
+    words = unechoed(settled(corrected(words)), question)
     return _turned(words, question) or _read(words, question)
 
 
@@ -81,9 +81,9 @@ def _turned(words: str, question: Question) -> Understood | None:
     A danger, or another thing than the one asked about, does; of rooms and ways, how it is now against how it was.
     """
     about, found = topic(question), turn(words)
-    echo = ECHO.match(words) or OPPOSITE.match(words)
+    before = lead(words, about)
     no_counts = about is not GapKind.OBSTACLE or no_is_careful(question)
-    if echo is not None and no_counts and (answer := _read(words[echo.end() :], question)).reading is Reading.NO:
+    if before is not None and no_counts and (answer := _read(words[before.end() :], question)).reading is Reading.NO:
         return answer
     if found is None:
         return None
