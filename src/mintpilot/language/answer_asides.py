@@ -14,6 +14,7 @@ _COURTESY = (
     r"(?:(?:(?:many )?thanks|thank you)(?: a lot| a bunch| a million| very much| so much| again| all)?(?: for \w+)?"
     r"|cheers|ta|noted|(?:very )?(?:cool|nice)(?: (?:talking|chatting) (?:to|with) you)?|talk to you (?:later|soon)"
     r"|(?:good)?bye(?: bye| now)?|good ?night|see you(?: later| soon)?|i see|i hear you|i understand|understood|got it"
+    r"|(?:i|we) (?:have )?(?:looked|will look|will see)"
     r"|have a (?:good|nice) \w+|mate|drone|sir)"
 )
 ACKNOWLEDGED = re.compile(rf"(?:{_HEARD}[ ,.;!]*)*{_COURTESY}[ ,.;!]*(?:(?:{_HEARD}|{_COURTESY})[ ,.;!]*)*")

@@ -47,11 +47,13 @@ _OPEN = (
     (r"(?<!is)(?<!re)(?<!be)(?<!yeah)(?<!yes)(?<!oh)(?<!looks)(?<!seems)(?<!it)(?<!all)(?<!the)(?<!on)(?<!to)"
      r"(?<=\w) (?:ok|okay|right)$", ""),
     (r"\bcan ?n[o']t\b|\bcant\b|\bcannot\b|\bcan't\b", "can not"), (r"\bwon'?t\b", "will not"),
-    (r"\bvisibility(?=(?: and \w+)? (?:is|are|looks) (?:all |very |perfectly )?"
+    (r"\b(?:visibility|temperatures?|heat)(?=(?: and (?:the )?\w+)? (?:is|are|looks) (?:all |very |perfectly )?"
      r"(?:fine|good|ok|great|normal|perfect)\b)", "measurement"),
     (r"^(yes|yeah|yep|no|nope|nah|negative|affirmative)[ ,]+(?:my (?:dear|love|darling|friend|boy|girl|lad)|sweetheart"
      r"|honey|hon|darling|sugar|pet|doctor|nurse|officer|captain|bro|bruv|guys|madam|ma'am)(?=\s*[,.!])", r"\1"),
-    (r"^(?:ja|jawohl|oui|s[i\N{LATIN SMALL LETTER I WITH ACUTE}]|da)(?= *$|[,.!]| yes\b)", "yes"),
+    (r"^(?:ja|jawohl|oui|s[i\N{LATIN SMALL LETTER I WITH ACUTE}]|da)"
+     r"(?= *$|[,.! ]+(?:yes|is|it|that|this|the|you|go|please)\b)", "yes"),
+    (r"^yes,? hello", "yes hello"),
     (r"\bcould not (?=(?:get|find|reach|leave|make it)\b)", "can not "),
     (r"\bshan'?t\b", "shall not"), (r"\bain'?t\b", "is not"), (r"\b(\w+)n't\b", r"\1 not"),
     (r"\b(do|does|did|is|are|was|were|has|have|had|would|could|should|must|need)nt\b", r"\1 not"),
@@ -82,7 +84,7 @@ _SIGNS = {"\N{THUMBS UP SIGN}": " yes ", "\N{THUMBS DOWN SIGN}": " no ", "\N{CRO
           "\N{RIGHT SINGLE QUOTATION MARK}": "'", "\N{EM DASH}": " , ", "\N{EN DASH}": " , ", " - ": " , ", "--": " , ",
           "...": " , ", "\N{HORIZONTAL ELLIPSIS}": " , ", "-": " ", ":": " , "}  # fmt: skip
 _AT_END = {"in": Kind.INSIDE, "what": Kind.UNSURE, "sorry": Kind.UNSURE, "right": Kind.YES, "again": Kind.UNSURE,
-           "go": Kind.AGREE, "pass": Kind.UNSURE, "no": Kind.NO}  # fmt: skip
+           "go": Kind.AGREE, "pass": Kind.UNSURE, "no": Kind.NO, "help": Kind.UNSURE}  # fmt: skip
 """Words that say something only where nothing follows; all but ``in`` only where nothing goes before either."""
 _ENDING = frozenset(
     tuple(phrase.split())
@@ -99,7 +101,7 @@ _AFTER_ONE = frozenset(
     word
     for words in (
         "yes yeah please there right here thanks thank then now sir mate love dear i we it that you and",
-        "exactly definitely for over with by on in next near behind beside under of to from at such as indeed",
+        "exactly definitely for with by on in next near behind beside under of to from at such as indeed",
         "not no",
         ", . ; ! ?",
     )
@@ -108,8 +110,12 @@ _AFTER_ONE = frozenset(
 """What may follow ``that one`` as consent; ``that one is full of nails`` is none."""
 _BEFORE_ON_IT = frozenset(["am", "are", "is", ",", ".", ";", "!", "?"])
 """What stands before ``on it`` where it asks for time; not in ``the one with a label on it``."""
-_OFF_COURSE = frozenset(["around", "round", "past", "away", "back", "elsewhere", "another"])
-"""What makes no consent of ``please go``: ``please go around it``."""
+_ON_COURSE = frozenset(
+    ("now", "please", "then", "slowly", "carefully", "safely", "there", "through", "in", "ahead", "on", "thanks", "sir")
+)
+"""What may follow ``you can go`` as consent to the way asked about; ``please go around it`` is none."""
+_NOT_EVERY = frozenset(("i", "we", "you", "except", "but"))
+"""What makes only some of ``everybody``: ``all the people I know``."""
 _SHORTEST_MENDED = 6
 _MENDED = frozenset((Kind.DANGER, Kind.HAZARD, Kind.NO, Kind.CONDITION, Kind.NOBODY))
 _MENDED_LONG = _MENDED | {Kind.UNSURE, Kind.SAFE, Kind.YES, Kind.BOOST, Kind.LIKELY, Kind.EMPTY}
@@ -178,8 +184,10 @@ def _fits(phrase: tuple[str, ...], tokens: list[str], at: int, kind: Kind) -> bo
     is_told = phrase[-1] == "one" and len(phrase) == 2 and not ends and tokens[end] not in _AFTER_ONE
     is_told &= kind is Kind.YES
     is_part = phrase == ("on", "it") and at > 0 and tokens[at - 1] not in _BEFORE_ON_IT
-    is_sent_off = kind is Kind.AGREE and phrase[-1] == "go" and tokens[end : end + 1] and tokens[end] in _OFF_COURSE
-    return not (is_denied or is_told or is_part or is_sent_off)
+    is_sent_off = kind is Kind.AGREE and phrase[-1] == "go" != phrase[0] and not ends
+    is_sent_off &= ends or tokens[end] not in _ON_COURSE
+    is_some = kind is Kind.EVERYBODY and not ends and tokens[end] in _NOT_EVERY
+    return not (is_denied or is_told or is_part or is_sent_off or is_some)
 
 
 @cache

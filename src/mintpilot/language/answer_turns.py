@@ -33,22 +33,22 @@ _CONFIRMS = re.compile(r"\b(?:confirm|confirmed|say yes|affirm)\b")
 _GIVING = frozenset(
     word
     for words in (
-        "i we can do would hereby gladly happily yes yeah ok right roger copy also definitely absolutely",
-        "certainly sure and then so just now it",
+        "i we can would hereby gladly happily yes yeah ok right roger copy also definitely absolutely",
+        "certainly sure and then so it",
     )
     for word in words.split()
 )
 """All that may stand before ``confirm`` where it is one: ``I can confirm``, not ``the lab must confirm``."""
 _NOT_YET = frozenset(["be", "being", "half", "partly", "partially", "almost", "nearly", "yet", "once", "to"])
 CORRECTION = re.compile(
-    r"\b(?:actually|no wait|wait no(?= \w)|(?<!what )i mean(?! it\b)|(?<!what )i meant|sorry|correction"
+    r"\b(?:actually|no wait|wait no(?= \w)|(?<!what )i mean(?! it\b)|(?<!what )i meant|(?<!^no )sorry|correction"
     r"|scratch that|strike that"
     r"|cancel that|belay that"
     r"|disregard that|make that|on second thoughts?|changed my mind|wait(?= (?:no|yes)\b)|(?:hang|hold) on"
-    r"(?= (?:no|yes)\b)|no sorry|rather(?= the\b))\b"
+    r"(?= (?:no|yes)\b)|(?<!^)no sorry|rather(?= the\b))\b"
 )
 """What comes after counts."""
-TAKEN_BACK = re.compile(r"\b(?:no wait|(?:scratch|strike|cancel|belay|disregard) that)$")
+TAKEN_BACK = re.compile(r"\b(?:no wait|(?:scratch|strike|cancel|belay|disregard) that)$|(?<=.)\bno sorry$")
 """A correction that nothing follows: what was said does not count."""
 NO_SPEECH = re.compile(r"[{}<>=\[\]\\|_@#^~`]|\w\(")
 """Marks of code: nobody says that to a drone."""

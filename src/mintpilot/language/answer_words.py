@@ -137,7 +137,7 @@ ATTITUDES: dict[Kind, str] = {
         gamble on it
     """,
     Kind.ELSEWHERE: """
-        i am here|we are here|i am listening|i heard you|i hear you|yes hello|speaking|we called|we have called|
+        i am here|we are here|and you|i am listening|i heard you|i hear you|yes hello|speaking|we called|we have called|
         go ahead of|no problem with the|next|next room|the other room|next door|other room|upstairs|downstairs|
         left one|right one|on the left|on the right|to the left|to the right|the left|opposite|adjacent|neighbouring|
         another room|the other door|other door|second one|first one|right
@@ -190,6 +190,7 @@ ATTITUDES: dict[Kind, str] = {
         is|are|was|were|has|have|had|does|did|do|can|will|would|should|be|been|being|am|may|must|shall|got|has got
     """,
     Kind.NOISE: """
+        sorry|
         oh no|oh god|oh my god|yet|at all|no other way|no other choice|no choice|please|thank you|thanks|sir|madam|
         ma'am|mam|drone|well|oh|um|uh|er|erm|uhm|ah|hm|mm|ahem|so|then|now|really|careful|carefully|be careful|slow|
         slowly|gently|still|well then|and|the|a|an|to|me|my|for|of|go|take|mean|i mean|with|from|by|want|need|needed|

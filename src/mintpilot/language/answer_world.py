@@ -91,7 +91,8 @@ STATES: dict[Kind, str] = {
         high voltage|electricity|sparks|sparking|restricted|off limits|out of bounds|forbidden|prohibited|no fly|
         no fly zone|no go|no go zone|no go area|no entry|banned|not allowed|mined|minefield|mines|bad|terrible|awful|
         horrible|nasty|lousy|scary|severe|hell|insane|crazy|madness|reckless|stupid|foolish|unwise|black smoke|
-        visibility|zero visibility|too high|rising|extreme|reduced|limited|unbreathable|scalding|boiling|
+        visibility|temperature|temperatures|heat|hundred|thousand|
+        zero visibility|too high|rising|extreme|reduced|limited|unbreathable|scalding|boiling|
         searing|scorching|dodgy|sketchy|iffy|treacherous|
         perilous|volatile|leak|leaking|leaks|full of smoke|smouldering|smoldering|ruin|fry|fries|toast|lose the drone|
         lose it|never make it|would not make it|will not make it|not make it|stinks|smells|smell|reeks|warning|alarm|
@@ -185,7 +186,7 @@ STATES: dict[Kind, str] = {
         cries|crying|cried|knock|knocks|knocking|knocked|bang|bangs|banging|banged|cough|coughs|coughing|moan|moans|
         moaning|groaning|groans|movement|moving|tapping|footsteps|calling for help|call for help|calls for help|
         called for help|cries for help|calling out|calling|called out|whimpering|sobbing|wailing|waving|waved|waves|
-        talking|singing|breathing|signs of life|sign of life|life signs|hammering
+        talking|singing|help|breathing|signs of life|sign of life|life signs|hammering
     """,
     Kind.PERCEIVE: "saw|see|seen|heard|hear|spotted|noticed|notice|spot|hearing|seeing|i could hear|feel|felt|found",
     Kind.NUMBER: """
