@@ -25,10 +25,30 @@ def test_the_way_keeps_away_from_the_ends_of_a_wall() -> None:
     cloud, solid, free = hall((14, 26), 5)
     near = hugging(cloud, solid, free, resolution_m=RES_M, hull_m=HULL_M)
     assert (near <= cloud).all()
-    # Five voxels of wall are hidden at either end; a metre from what is seen is not counted on.
-    assert near[1, 9:13, 20].all()
+    # Five voxels of wall are hidden at either end of 22 unseen ones: only the middle is counted on.
+    assert near[1, 9:14, 20].all()
+    assert near[1, 26:31, 20].all()
+    assert not near[1, 18:22, 20].any()
+
+
+def test_a_pocket_that_is_cut_off_does_not_matter() -> None:
+    cloud, solid, free = hall((14, 26), 5)
+    solid[:, 11:14, 25:30] = True
+    solid[:, 12, 26:29] = False  # a pocket between crates at the cloud's edge
+    free &= ~solid
+    free[:, 12, 27:29] = True
+    near = hugging(cloud, solid, free, resolution_m=RES_M, hull_m=0.05)
     assert near[1, 27:31, 20].all()
-    assert not near[1, 15:25, 20].any()
+
+
+def test_a_dead_end_keeps_room_to_go_into() -> None:
+    cloud, solid, free = (np.zeros((5, 40, 40), bool) for _ in range(3))
+    solid[:, :10, 12:28] = solid[:, 30:, 12:28] = solid[:, :, 28] = True  # a corridor with an end, full of smoke
+    cloud[:, 10:30, 14:28] = True
+    free |= ~(cloud | solid)
+    near = hugging(cloud, solid, free, resolution_m=RES_M, hull_m=HULL_M)
+    assert near[2, 10:12, 20].all()
+    assert not near[2, 13:27, 20].any()
 
 
 def test_a_narrow_gap_stays_open() -> None:
