@@ -19,7 +19,11 @@ _COURTESY = (
 )
 ACKNOWLEDGED = re.compile(rf"(?:{_HEARD}[ ,.;!]*)*{_COURTESY}[ ,.;!]*(?:(?:{_HEARD}|{_COURTESY})[ ,.;!]*)*")
 """All that is said where somebody only tells that they heard: ``okay thanks``."""
-CUT_OFF = re.compile(r"\b(?:it|that|there|he|she|they|we|i|you)['\N{RIGHT SINGLE QUOTATION MARK}](?:s|re|m)\W*$", re.I)
+CUT_OFF = re.compile(
+    r"\b(?:(?:it|that|there|he|she|they|we|i|you)['\N{RIGHT SINGLE QUOTATION MARK}](?:s|re|m)"
+    r"|its|thats|theres|hes|shes|theyre|youre|im)\W*$",
+    re.I,
+)
 """An answer that breaks off before what matters: ``yes, it's``."""
 _LOOKS = "|".join(word for word, (name, _) in ADJECTIVES.items() if name == "colour")
 _DESCRIBED = re.compile(
