@@ -11,9 +11,10 @@ from mintpilot.benchmark.language_report import LanguageOptions, language_tables
 
 INSTRUCTIONS = ROOT.parent / "shared" / "data" / "instructions" / "mobile_manipulation.txt"
 NOTES = (
-    "The answers were written while the rules were made: what is measured on them is no forecast. Three batches of "
-    "1,146, 941 and 292 new ones, the first two odd and hostile on purpose, were each read by rules that had not seen "
-    "them: 93.5, 91.0 and 96.6 % were understood, with 17, 18 and 2 Yes that were not said. What was missed is mended.",
+    "The answers were written while the rules were made: what is measured on them is no forecast. Four further lists "
+    "were written without sight of the rules, of 240 (meant to be hard), 200, 160 and 200 answers. At first reading "
+    "74.6, 91.0, 92.5 and 96.0 % were understood, with 2, 1, 1 and 0 Yes that were not said. After each of the first "
+    "three the classes of sentences behind the misses were mended; the fourth stands as it was read.",
     "A Yes about an obstacle is never taken from a model: there it can only find a No.",
     "Ambiguous instructions: rules were made with an eye on the first 200 blocks only. Objects only, not places.",
 )
