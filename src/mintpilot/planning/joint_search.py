@@ -66,6 +66,7 @@ class JointSearch:
         self._sets: NDArray[np.void] = np.empty(1 << 10, joint_labels.ENTERED)
         self._found: NDArray[np.void] = np.empty(1 << 10, joint_labels.FOUND)
         self._overlays: dict[tuple[int, ...], Overlay] = {}
+        self._worn: Overlay | None = None
 
     def between(self, start: ArrayLike, goal: ArrayLike) -> DecisionList[Ints]:
         """All ways from start to goal (cells (z, y, x)) that are best under some set of blocked regions.
@@ -98,6 +99,7 @@ class JointSearch:
 
     def forget(self) -> None:
         """Forgets what was prepared for the regions (for measuring)."""
+        self._worn = next(iter(self._overlays.values()), self._worn)
         self._overlays.clear()
 
     def under(self, start: ArrayLike, goal: ArrayLike, blocked: int) -> tuple[float, Ints] | None:
@@ -140,9 +142,9 @@ class JointSearch:
 
     def _overlay(self, chosen: tuple[int, ...]) -> Overlay:
         if chosen not in self._overlays:
-            self._overlays.clear()
+            self.forget()
             nodes = [self.regions[r] for r in chosen]
-            self._overlays[chosen] = overlay_of(self.grid.lattice, nodes, self._opened(chosen))
+            self._overlays[chosen] = overlay_of(self.grid.lattice, nodes, self._opened(chosen), self._worn)
         return self._overlays[chosen]
 
     def _labels(self, start: int, bound: float, overlay: Overlay) -> list[Way[int]] | None:

@@ -25,29 +25,39 @@ class Overlay:
     """Allowed moves that touch no region."""
     shore: Ints
     """Nodes (n,) outside all regions from which one move may touch a region."""
+    closed: Words
+    """The allowed moves that it was laid over."""
+    touched: Ints
+    """Nodes (n,) at which the arrays differ from what there would be without regions."""
 
 
-def overlay_of(lattice: Lattice, regions: Sequence[Ints], closed: Words) -> Overlay:
+def overlay_of(lattice: Lattice, regions: Sequence[Ints], closed: Words, worn: Overlay | None = None) -> Overlay:
     """Lays regions over a lattice.
 
     Args:
         lattice: the grid.
         regions: nodes of each region; bit r stands for the r-th.
         closed: allowed moves to start from (those of the lattice, or fewer).
+        worn: an overlay that is used no more, whose memory may be taken: whole copies of the moves cost as much as a
+            search.
     """
-    region = np.zeros(lattice.size, np.uint64)
+    if worn is not None and worn.closed is closed:
+        region, near, without = worn.region, worn.near, worn.without
+        region[worn.touched] = 0
+        near[worn.touched] = without[worn.touched] = closed[worn.touched]
+    else:
+        region, near, without = np.zeros(lattice.size, np.uint64), closed.copy(), closed.copy()
     for bit, nodes in enumerate(regions):
         region[nodes] |= np.uint64(1 << bit)
-    near = closed.copy()
-    without = closed.copy()
-    shore = np.zeros(0, np.int64)
+    shore = touched = np.zeros(0, np.int64)
     if regions:
-        nodes = np.concatenate(list(regions))
-        nodes = nodes[lattice.free[nodes] == 1]
+        covered = np.concatenate(list(regions))
+        nodes = covered[lattice.free[covered] == 1]
         rest = _mark(lattice, nodes)
         marked = _close(without, near, lattice.free, rest, lattice.around, lattice.moves.needs, nodes)
         shore = marked[region[marked] == 0]
-    return Overlay(region=region, near=near, without=without, shore=shore)
+        touched = np.concatenate([covered, marked])
+    return Overlay(region=region, near=near, without=without, shore=shore, closed=closed, touched=touched)
 
 
 def closed_moves(lattice: Lattice, allowed: Words, regions: Iterable[Ints]) -> Words:
