@@ -26,6 +26,8 @@ ENTRY = np.dtype([("g", np.float64), ("node", np.int32), ("next", np.int32)])
 
 FULL = -1.0
 """Returned instead of a cost when the pool is too small."""
+SHORT = -2.0
+"""Returned instead of a cost when the heuristic must be known further out."""
 RING = 64
 """Number of buckets."""
 PER_EDGE = 8.0
@@ -33,7 +35,11 @@ PER_EDGE = 8.0
 SLACK = 1e-9
 """Costs closer than this are equal: they are sums of the same numbers in another order."""
 CLOSED = 64
-"""Added to the last move of a node that has been expanded."""
+"""Added to the last move of a node that A* has expanded."""
+KNOWN = -64
+"""Added to the last move of a node that a field has expanded: negative numbers are those of known distances."""
+MOVE = 31
+"""The bits of the last move."""
 
 
 def _lowest_bit(typingctx: Any, word: Any) -> Any:  # noqa: ARG001

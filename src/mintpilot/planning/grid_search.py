@@ -5,46 +5,18 @@ Costs are in cell edges: 1, ``sqrt(2)`` and ``sqrt(3)`` a move; multiply by the 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from mintpilot.core.errors import InfeasibleError
 from mintpilot.core.geometry import Bools, Floats, Ints
 from mintpilot.planning import buckets, kernels
+from mintpilot.planning.distance_field import DistanceField
 from mintpilot.planning.lattice import Lattice, Words, lattice_of
+from mintpilot.planning.workspace import Workspace
 
-
-@dataclass(slots=True, eq=False)
-class Workspace:
-    """Memory that searches of one lattice use again and again; it grows when it must."""
-
-    size: int
-    """Number of nodes."""
-    cells: NDArray[np.void] = field(init=False)
-    """State of each node, dtype `buckets.CELL`."""
-    pool: NDArray[np.void] = field(init=False)
-    """Queue entries, dtype `buckets.ENTRY`."""
-    tag: int = field(init=False, default=0)
-    """Number of the last search: states with another tag are stale."""
-
-    def __post_init__(self) -> None:
-        self.cells = np.zeros(self.size, buckets.CELL)
-        self.pool = np.empty(1 << 12, buckets.ENTRY)
-
-    def next_tag(self) -> int:
-        """The number of a new search."""
-        if self.tag == 0xFFFFFFFF:
-            self.cells["tag"] = 0
-            self.tag = 0
-        self.tag += 1
-        return self.tag
-
-    def grown_tag(self) -> int:
-        """The number of a new search, after doubling the pool."""
-        self.pool = np.empty(2 * self.pool.size, buckets.ENTRY)
-        return self.next_tag()
+STRIDE = 4.0
+"""How much further a heuristic is grown at a time, edges."""
 
 
 class GridSearch:
@@ -75,7 +47,12 @@ class GridSearch:
         return self.lattice.path_cost(cells), cells
 
     def node_path(
-        self, source: int, target: int, allowed: Words, guide: Floats | None = None, work: Workspace | None = None
+        self,
+        source: int,
+        target: int,
+        allowed: Words,
+        ahead: DistanceField | None = None,
+        work: Workspace | None = None,
     ) -> tuple[float, NDArray[np.int64]]:
         """A* over nodes with any word of allowed moves; (infinity, empty) where there is no path.
 
@@ -83,18 +60,19 @@ class GridSearch:
             source: node to start from.
             target: node to reach.
             allowed: moves of each node, at most those of the lattice.
-            guide: exact lower bounds of the distance to the target, (size,); None: octile distance.
-            work: where to leave the nodes' states; None: in `work`. With the octile distance, the costs of all nodes
-                whose cost and octile distance to the target sum up to less than the result are exact.
+            ahead: distances from the target, grown towards the source (and known there) on a map with no fewer moves:
+                the heuristic, which grows as it is needed; None: octile distance.
+            work: where to leave the nodes' states, not that of ``ahead``; None: in `work`. The costs of all nodes whose
+                cost and heuristic sum up to less than the result are exact.
         """
         lattice, moves = self.lattice, self.lattice.moves
         work = work or self.work
         if not (lattice.free[source] and lattice.free[target]):
             return np.inf, np.zeros(0, np.int64)
-        tag = work.next_tag()
-        cost = buckets.FULL
-        while cost == buckets.FULL:
-            cost, self.expanded = kernels.astar(
+        queue = work.begin(source)
+        cost, self.expanded = buckets.FULL, 0
+        while cost < 0:
+            cost, expanded = kernels.astar(
                 allowed,
                 lattice.offset,
                 moves.step,
@@ -106,40 +84,23 @@ class GridSearch:
                 lattice.padded[1],
                 source,
                 target,
-                guide,
+                ahead.work.cells if ahead else None,
+                ahead.work.tag if ahead else 0,
+                ahead.reach if ahead else 0.0,
                 work.cells,
-                tag,
+                work.tag,
                 work.pool,
+                work.head,
+                queue,
             )
-            tag = work.grown_tag() if cost == buckets.FULL else tag
+            self.expanded += expanded
+            if cost == buckets.FULL:
+                work.make_room()
+            elif cost == buckets.SHORT and ahead:
+                ahead.grow(ahead.reach + STRIDE)
         if not np.isfinite(cost):
             return np.inf, np.zeros(0, np.int64)
         return cost, kernels.walk_back(work.cells, lattice.offset, source, target)
-
-    def node_field(self, source: int, target: int, bound: float, allowed: Words) -> None:
-        """Leaves in `Workspace.cells`, under the present tag, the distances of `kernels.field`."""
-        lattice, work, moves = self.lattice, self.work, self.lattice.moves
-        tag = work.next_tag()
-        self.expanded = -1
-        while self.expanded < 0:
-            self.expanded = kernels.field(
-                allowed,
-                lattice.offset,
-                moves.step,
-                moves.length,
-                moves.after,
-                moves.detour,
-                moves.open,
-                lattice.padded[2],
-                lattice.padded[1],
-                source,
-                target,
-                bound,
-                work.cells,
-                tag,
-                work.pool,
-            )
-            tag = work.grown_tag() if self.expanded < 0 else tag
 
     def distances(self, source: ArrayLike, bound: float = np.inf) -> Floats:
         """Distance in edges from a cell (z, y, x) to every cell (nz, ny, nx).
@@ -149,10 +110,10 @@ class GridSearch:
         node = self.lattice.node(source)
         out = np.full(self.lattice.size, np.inf)
         if self.lattice.free[node]:
-            self.node_field(node, -1, bound, self.lattice.allowed)
-            cells = self.work.cells
-            reached = cells["tag"] == self.work.tag
-            out[reached] = cells["g"][reached]
+            field = DistanceField(self.lattice, self.work, node, -1, self.lattice.allowed)
+            field.grow(bound)
+            out = field.everywhere()
+            out[out > bound + buckets.SLACK] = np.inf
         up = slice(None) if self.lattice.shape[0] == 1 else slice(1, -1)
         distances: Floats = out.reshape(self.lattice.padded)[up, 1:-1, 1:-1].copy()
         return distances

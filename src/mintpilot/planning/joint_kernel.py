@@ -7,7 +7,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from mintpilot.core.geometry import Floats, Ints
-from mintpilot.planning.buckets import CLOSED, PER_EDGE, RING, SLACK, lowest_bit, redundant
+from mintpilot.planning.buckets import MOVE, PER_EDGE, RING, SLACK, lowest_bit, redundant
 from mintpilot.planning.joint_labels import DEAD, ON_SHORE, admit, append, numbered
 from mintpilot.planning.joint_paths import take_aim
 from mintpilot.planning.lattice import NEAR, Words
@@ -88,7 +88,7 @@ def search_labels(
     while queued > 0 or landed < waiting.size:
         if landed < waiting.size and due[landed] - f0 < (bucket + 1) / PER_EDGE:
             node, number = waiting[landed], 0
-            g, last, label = safe[node].g, safe[node].last & (CLOSED - 1), ON_SHORE - node
+            g, last, label = safe[node].g, safe[node].last & MOVE, ON_SHORE - node
             landed += 1
         else:
             label = head[bucket & (RING - 1)]

@@ -7,7 +7,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from mintpilot.core.geometry import Floats
-from mintpilot.planning.buckets import RING
+from mintpilot.planning.buckets import KNOWN, RING
 
 LABEL = np.dtype([("g", np.float64)] + [(n, np.int32) for n in ("set", "node", "parent", "below", "next", "last")])
 """Cost so far; number of the set of regions entered; where; the label it came from, the node's next label, the
@@ -23,7 +23,7 @@ ON_SHORE = -2
 """`ON_SHORE` - v stands for the way to node v that enters no region, in the place of a label."""
 
 DEAD = 64
-FIRST = 32  # a node's `last` below it is still the move of the field search: the node has no label yet
+FIRST = 32  # a node whose `last` is below has no label: it is still the move of the field
 
 
 @njit(cache=True, error_model="numpy")
@@ -61,7 +61,7 @@ def admit(
         if cost <= pool[i].g + 1e-12 and mask & ~other == 0:
             pool[i].last |= DEAD
             if above < 0:
-                cells[to].last = FIRST + below if below >= 0 else 0
+                cells[to].last = FIRST + below if below >= 0 else KNOWN
             else:
                 pool[above].below = below
         else:
@@ -100,4 +100,4 @@ def append(
 def forget(pool: NDArray[np.void], used: int, cells: NDArray[np.void]) -> None:
     """Takes all labels off their nodes, so that the search can begin anew."""
     for i in range(used):
-        cells[pool[i].node].last = 0
+        cells[pool[i].node].last = KNOWN

@@ -6,8 +6,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from mintpilot.core.geometry import Ints
-from mintpilot.planning.buckets import CLOSED
+from mintpilot.core.geometry import Floats, Ints
+from mintpilot.planning.buckets import MOVE
 from mintpilot.planning.joint_labels import DEAD, ON_SHORE
 from mintpilot.planning.lattice import NEAR, Words
 from mintpilot.planning.moves import NO_MOVE
@@ -35,7 +35,7 @@ def take_aim(
     trail = np.empty(0, np.int64)
     count, first = 0, node
     while True:
-        last = cells[node].last
+        last = cells[node].last & MOVE
         ahead = node - offset[last] if last != NO_MOVE else -1
         if ahead < 0 or aims[ahead].tag == tag:
             break
@@ -58,12 +58,13 @@ def take_aim(
             break
         count -= 1
         ahead, node = node, trail[count]
-        last = cells[node].last
+        last = cells[node].last & MOVE
 
 
 @njit(cache=True, error_model="numpy")
 def traced(
     labels: Ints,
+    costs: Floats,
     start_cell: Ints,
     pool: NDArray[np.void],
     safe: NDArray[np.void],
@@ -71,33 +72,38 @@ def traced(
     offset: Ints,
     step: Ints,
 ) -> tuple[Ints, Ints, Ints]:
-    """The ways of labels (n,): before them as they came, after them as they aim.
+    """The ways of labels (n,), of those costs (n,): before them as they came, after them as they aim.
 
     Returns:
         (cells (m, 3) of all ways one after the other; where each ends there (n,); numbers of moves (n, 4) along 0, 1,
         2 and 3 axes).
     """
+    room = 1
+    for n in range(labels.size):
+        room += int(costs[n]) + 2  # no move is shorter than 1
+    moves = np.empty(room, np.int64)
     ends = np.zeros(labels.size, np.int64)
     total = 0
     for n in range(labels.size):
-        total += 1 + moves_of(labels[n], pool, safe, aims, offset, ends[:0])
+        total += moves_of(labels[n], pool, safe, aims, offset, moves[total:])
         ends[n] = total
-    cells = np.empty((total, 3), np.int64)
+    cells = np.empty((total + labels.size, 3), np.int64)
     kinds = np.zeros((labels.size, 4), np.int64)
-    moves = np.empty(total, np.int64)
-    at = 0
+    at, i = 0, 0
     for n in range(labels.size):
-        count = moves_of(labels[n], pool, safe, aims, offset, moves)
-        cells[at] = start_cell
-        for i in range(count):
-            k, sign = (moves[i], 1) if moves[i] >= 0 else (-1 - moves[i], -1)
-            at += 1
-            along = 0
-            for axis in range(3):
-                cells[at, axis] = cells[at - 1, axis] + sign * step[k, axis]
-                along += abs(step[k, axis])
-            kinds[n, along] += 1
+        z, y, x = start_cell[0], start_cell[1], start_cell[2]
+        cells[at, 0], cells[at, 1], cells[at, 2] = z, y, x
         at += 1
+        while i < ends[n]:
+            k, sign = (moves[i], 1) if moves[i] >= 0 else (-1 - moves[i], -1)
+            z += sign * step[k, 0]
+            y += sign * step[k, 1]
+            x += sign * step[k, 2]
+            cells[at, 0], cells[at, 1], cells[at, 2] = z, y, x
+            kinds[n, abs(step[k, 0]) + abs(step[k, 1]) + abs(step[k, 2])] += 1
+            at += 1
+            i += 1
+        ends[n] = at
     return cells, ends, kinds
 
 
@@ -105,35 +111,26 @@ def traced(
 def moves_of(
     label: int, pool: NDArray[np.void], safe: NDArray[np.void], aims: NDArray[np.void], offset: Ints, moves: Ints
 ) -> int:
-    """Number of moves of a label's way; the moves themselves if there is room (-1 - k: move k the other way round)."""
-    behind, i = 0, label
-    while i >= 0:
-        behind += pool[i].last & ~DEAD != NO_MOVE
-        i = pool[i].parent
-    node = ON_SHORE - i if i <= ON_SHORE else -1
-    while node >= 0:
-        last = safe[node].last & (CLOSED - 1)
-        behind += last != NO_MOVE
-        node = node - offset[last] if last != NO_MOVE else -1
-    count, node = behind, pool[label].node
-    while aims[node].last != NO_MOVE:
-        if moves.size:
-            moves[count] = -1 - aims[node].last
-        count += 1
-        node -= offset[aims[node].last]
-    if not moves.size:
-        return count
-    i = label
+    """Writes the moves of a label's way (-1 - k: move k the other way round); their number."""
+    count, i = 0, label
     while i >= 0:
         last = pool[i].last & ~DEAD
         if last != NO_MOVE:
-            behind -= 1
-            moves[behind] = last
+            moves[count] = last
+            count += 1
         i = pool[i].parent
     node = ON_SHORE - i if i <= ON_SHORE else -1
-    while behind > 0:
-        last = safe[node].last & (CLOSED - 1)
-        behind -= 1
-        moves[behind] = last
+    while node >= 0:
+        last = safe[node].last & MOVE
+        if last == NO_MOVE:
+            break
+        moves[count] = last
+        count += 1
         node -= offset[last]
+    moves[:count] = moves[:count][::-1].copy()
+    node = pool[label].node
+    while aims[node].last != NO_MOVE:
+        moves[count] = -1 - aims[node].last
+        count += 1
+        node -= offset[aims[node].last]
     return count

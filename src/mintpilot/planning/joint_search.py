@@ -1,8 +1,9 @@
 """The best way under every joint hypothesis of obstacle gaps, from one search (method, section 2).
 
-1. A plan that enters no region gives an upper bound (none where there is no such plan).
-2. Distances to the goal on the optimistic map, cut off by that bound, are a perfect heuristic for every hypothesis. A
-   region whose cells all lie on ways as long as the bound is never touched: it is irrelevant.
+1. Distances to the goal on the optimistic map, grown towards the start no further than they are needed, are a perfect
+   heuristic for every hypothesis.
+2. A plan that enters no region gives an upper bound (none where there is no such plan). A region whose cells all lie on
+   ways as long as the bound is never touched: it is irrelevant.
 3. One search over labels (cost, set of regions entered), where a label is beaten by one at the same place with no more
    cost and no other region, gives the decision list. A label whose shortest way on enters nothing new is done: it is
    a way, and its place needs no other continuation.
@@ -22,10 +23,12 @@ from numpy.typing import ArrayLike, NDArray
 from mintpilot.core.geometry import Bools, Floats, Ints
 from mintpilot.planning import joint_kernel, joint_labels, joint_paths
 from mintpilot.planning.decision_list import DecisionList, Way, sorted_ways
-from mintpilot.planning.grid_search import GridSearch, Workspace
+from mintpilot.planning.distance_field import DistanceField
+from mintpilot.planning.grid_search import GridSearch
 from mintpilot.planning.lattice import cost_of_moves
 from mintpilot.planning.lazy import lazy_ways
 from mintpilot.planning.overlay import Overlay, closed_moves, followed, overlay_of
+from mintpilot.planning.workspace import Workspace
 
 MAX_REGIONS = 63
 """Regions that one search can tell apart; the least relevant ones beyond it are taken as blocked."""
@@ -80,21 +83,25 @@ class JointSearch:
             return DecisionList(ways=())
         chosen = self._chosen(*ends)
         overlay = self._overlay(chosen)
-        bound, safe_path = self.grid.node_path(*ends, overlay.without, work=self._safe)
-        safe = [self._way(safe_path, overlay)] if np.isfinite(bound) else []
-        self.grid.node_field(ends[1], ends[0], bound, overlay.near)
-        found = self._labels(ends[0], bound, overlay)
-        result: DecisionList[Ints] = DecisionList(ways=())
-        if found is None:
-            result = self._branch(*ends, overlay, chosen)
-            ways = sorted_ways([*safe, *result.ways])
-        else:
-            ways = self._traced(found, safe, ends[0])
+        ahead = DistanceField(lattice, self.grid.work, ends[1], ends[0], overlay.near)
+        ahead.grow(hold=True)
+        ways: tuple[Way[Ints], ...] = ()
+        not_expanded = 0
+        if np.isfinite(ahead.at(ends[0])):
+            bound, safe_path = self.grid.node_path(*ends, overlay.without, ahead, self._safe)
+            safe = [self._way(safe_path, overlay)] if np.isfinite(bound) else []
+            ahead.grow(bound)
+            found = self._labels(ends[0], bound, overlay)
+            if found is None:
+                branched = self._branch(*ends, overlay, chosen, ahead)
+                ways, not_expanded = sorted_ways([*safe, *branched.ways]), branched.not_expanded
+            else:
+                ways = self._traced(found, safe, ends[0])
         return DecisionList(
             ways=tuple(self._named(w, chosen) for w in ways),
-            complete=result.complete and len(chosen) == len(self.regions),
+            complete=not_expanded == 0 and len(chosen) == len(self.regions),
             left_out=tuple(r for r in range(len(self.regions)) if r not in set(chosen)),
-            not_expanded=result.not_expanded,
+            not_expanded=not_expanded,
         )
 
     def forget(self) -> None:
@@ -122,16 +129,14 @@ class JointSearch:
         if count <= MAX_REGIONS:
             return tuple(range(count))
         allowed = self.grid.lattice.allowed
-        ahead = self._distances(start, allowed)
-        behind = self._distances(goal, allowed)
-        through = ahead + behind
+        through = self._distances(start, allowed) + self._distances(goal, allowed)
         nearest = [float(through[r].min(initial=np.inf)) for r in self.regions]
         return tuple(sorted(sorted(range(count), key=lambda r: (nearest[r], r))[:MAX_REGIONS]))
 
     def _distances(self, source: int, allowed: NDArray[np.uint64]) -> Floats:
-        self.grid.node_field(source, -1, np.inf, allowed)
-        cells = self.grid.work.cells
-        return np.where(cells["tag"] == self.grid.work.tag, cells["g"], np.inf)
+        field = DistanceField(self.grid.lattice, self.grid.work, source, -1, allowed)
+        field.grow()
+        return field.everywhere()
 
     def _opened(self, chosen: tuple[int, ...]) -> NDArray[np.uint64]:
         """Allowed moves with the chosen regions passable and the others blocked."""
@@ -189,9 +194,10 @@ class JointSearch:
         lattice = self.grid.lattice
         rivals = [Way(cost=way.cost, mask=way.mask, path=-1) for way in safe]
         ways = sorted_ways([*rivals, *found])
-        labels = np.array([way.path for way in ways if way.path >= 0], np.int64)
+        ours = [way for way in ways if way.path >= 0]
         cells, ends, kinds = joint_paths.traced(
-            labels,
+            np.array([way.path for way in ours], np.int64),
+            np.array([way.cost for way in ours], np.float64),
             lattice.cells(np.array([start]))[0],
             self._pool,
             self._safe.cells,
@@ -216,11 +222,10 @@ class JointSearch:
         return True
 
     def _branch(
-        self, start: int, goal: int, overlay: Overlay, chosen: tuple[int, ...]
+        self, start: int, goal: int, overlay: Overlay, chosen: tuple[int, ...], ahead: DistanceField
     ) -> DecisionList[NDArray[np.int64]]:
         """Lazy branching, guided by the exact optimistic distances."""
-        guide = self._distances(goal, self._opened(chosen))
-        search = _Branching(search=self, ends=(start, goal), guide=guide, overlay=overlay, chosen=chosen)
+        search = _Branching(search=self, ends=(start, goal), ahead=ahead, overlay=overlay, chosen=chosen)
         return lazy_ways(search, max_searches=self.effort.searches)
 
     def _way(self, nodes: NDArray[np.int64], overlay: Overlay) -> Way[NDArray[np.int64]]:
@@ -244,7 +249,7 @@ class _Branching:
 
     search: JointSearch
     ends: tuple[int, int]
-    guide: Floats
+    ahead: DistanceField
     overlay: Overlay
     chosen: tuple[int, ...]
 
@@ -255,7 +260,7 @@ class _Branching:
             return None
         nodes = [self.search.regions[self.chosen[r]] for r in sorted(blocked)]
         allowed = closed_moves(grid.lattice, self.search._opened(self.chosen), nodes)
-        cost, path = grid.node_path(*self.ends, allowed, self.guide)
+        cost, path = grid.node_path(*self.ends, allowed, self.ahead, self.search._safe)
         if not np.isfinite(cost):
             return None
         way = self.search._way(path, overlay)

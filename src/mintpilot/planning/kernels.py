@@ -14,10 +14,12 @@ from mintpilot.core.geometry import Floats, Ints
 from mintpilot.planning.buckets import (
     CLOSED,
     FULL,
+    KNOWN,
+    MOVE,
     PER_EDGE,
     RING,
+    SHORT,
     SLACK,
-    begin,
     coordinates,
     lowest_bit,
     octile,
@@ -40,33 +42,43 @@ def astar(
     ny: int,
     start: int,
     goal: int,
-    guide: Floats | None,
+    ahead: NDArray[np.void] | None,
+    ahead_tag: int,
+    reach: float,
     cells: NDArray[np.void],
     tag: int,
     pool: NDArray[np.void],
+    head: NDArray[np.int32],
+    queue: Ints,
 ) -> tuple[float, int]:
-    """A* from start to goal; (cost, infinity or `FULL`; nodes expanded). Moves that led to each node stay in cells.
+    """A* from start to goal. Moves that led to each node stay in cells.
 
-    ``guide`` is a consistent lower bound of the distance to the goal of every node, or None for the octile distance.
+    ``ahead`` holds, under ``ahead_tag``, what `field` found from the goal towards the start up to ``reach``, the start
+    included, on a map with no fewer moves; None: the heuristic is the octile distance alone.
+
+    Returns:
+        (cost; infinity; `FULL` when the pool is too small; `SHORT` when the field must reach further, after which the
+        next call goes on from ``head`` and ``queue``, see `field`; nodes expanded).
     """
     gx, gy, gz = coordinates(goal, nx, ny)
-    x, y, z = coordinates(start, nx, ny)
-    if guide is None:  # noqa: SIM108 - the compiler prunes the branch, but not the expression
-        f0 = octile(x - gx, y - gy, z - gz)
-    else:
-        f0 = guide[start]
-    if f0 == np.inf:
-        return np.inf, 0
-    head = np.empty(RING, np.int32)
-    begin(cells, pool, head, start, tag)
-    best, limit = np.inf, np.inf
-    spare, used, queued, bucket, expanded = -1, 1, 1, 0, 0
+    sx, sy, sz = coordinates(start, nx, ny)
+    f0 = octile(sx - gx, sy - gy, sz - gz) if ahead is None else ahead[start].g
+    best = cells[goal].g if cells[goal].tag == tag and cells[goal].last & CLOSED else np.inf
+    limit = best - SLACK
+    spare, used, queued, bucket = queue[0], queue[1], queue[2], queue[3]
+    expanded = 0
     while queued > 0:
+        if used + length.size > pool.size:
+            best = FULL
+            break
         entry = head[bucket & (RING - 1)]
         if entry < 0:
-            bucket += 1
-            if best <= f0 + bucket / PER_EDGE + SLACK:
+            if best <= f0 + (bucket + 1) / PER_EDGE + SLACK:
                 break
+            if ahead is not None and f0 + (bucket + 2) / PER_EDGE > reach:
+                best = SHORT
+                break
+            bucket += 1
             continue
         node, g = pool[entry].node, pool[entry].g
         head[bucket & (RING - 1)] = pool[entry].next
@@ -76,15 +88,23 @@ def astar(
         last = cells[node].last
         if cells[node].g != g or last & CLOSED:
             continue
+        x, y, z = coordinates(node, nx, ny)
+        if ahead is not None:
+            if ahead[node].tag == ahead_tag and ahead[node].last < 0:
+                f = g + ahead[node].g
+            else:
+                f = g + reach - octile(x - sx, y - sy, z - sz)
+            later = int((f - f0) * PER_EDGE)
+            if later > bucket:  # the field has come further since the node was queued
+                spare, used = put(pool, head, min(later, bucket + RING - 1), node, g, spare, used)
+                queued += 1
+                continue
         cells[node].last = last | CLOSED
         if node == goal:
             best, limit = g, g - SLACK
             continue
         expanded += 1
-        if used + length.size > pool.size:
-            return FULL, expanded
-        x, y, z = coordinates(node, nx, ny)
-        if best < np.inf and guide is None and g + octile(x - gx, y - gy, z - gz) >= limit:
+        if best < np.inf and ahead is None and g + octile(x - gx, y - gy, z - gz) >= limit:
             continue
         ground = allowed[node] >> np.uint64(32)
         word = allowed[node] & after[last, 1 if ground == open_ground else 0]
@@ -97,10 +117,12 @@ def astar(
             cost = g + length[k]
             if cells[to].tag == tag and cost >= cells[to].g - 1e-12:
                 continue
-            if guide is None:
+            if ahead is None:
                 f = cost + octile(x + step[k, 2] - gx, y + step[k, 1] - gy, z + step[k, 0] - gz)
+            elif ahead[to].tag == ahead_tag and ahead[to].last < 0:
+                f = cost + ahead[to].g
             else:
-                f = cost + guide[to]
+                f = cost + reach - octile(x + step[k, 2] - sx, y + step[k, 1] - sy, z + step[k, 0] - sz)
             if not f < limit:
                 continue
             cells[to].g = cost
@@ -108,6 +130,7 @@ def astar(
             cells[to].last = k
             spare, used = put(pool, head, max(bucket, int((f - f0) * PER_EDGE)), to, cost, spare, used)
             queued += 1
+    queue[0], queue[1], queue[2], queue[3] = spare, used, queued, bucket
     return best, expanded
 
 
@@ -124,23 +147,41 @@ def field(
     ny: int,
     source: int,
     target: int,
-    bound: float,
+    until: float,
+    hold: bool,
     cells: NDArray[np.void],
     tag: int,
     pool: NDArray[np.void],
-) -> int:
-    """Distances from the source to all nodes that may lie on a way to the target of at most ``bound``.
+    head: NDArray[np.int32],
+    queue: Ints,
+) -> tuple[float, int]:
+    """Grows the exact distances from the source in the order of f = distance + octile distance to the target.
 
-    The test is distance + octile distance to the target <= bound; with target -1 it is distance <= bound. Distances
-    of all nodes that pass are exact. They stay in ``cells``. Returns the nodes expanded, or -1 when the pool is full.
+    With target -1, f is the distance. ``head`` and ``queue`` (first unused entry or -1, entries ever used, entries
+    queued, bucket) are left so that the next call goes on from here. Distances stay in ``cells``.
+
+    It stops when all nodes whose f is at most ``until`` were expanded; with ``hold`` also as soon as the distance to
+    the target is known.
+
+    Returns:
+        (reach: every distance whose f is less is exact; infinite when all are; `FULL` when the pool is too small;
+        nodes expanded).
     """
     gx, gy, gz = coordinates(max(target, 0), nx, ny)
-    head = np.empty(RING, np.int32)
-    begin(cells, pool, head, source, tag)
-    spare, used, queued, bucket, expanded = -1, 1, 1, 0, 0
+    x, y, z = coordinates(source, nx, ny)
+    f0 = octile(x - gx, y - gy, z - gz) if target >= 0 else 0.0
+    spare, used, queued, bucket = queue[0], queue[1], queue[2], queue[3]
+    expanded, reach = 0, np.inf
     while queued > 0:
+        if used + length.size > pool.size:
+            reach = FULL
+            break
         entry = head[bucket & (RING - 1)]
         if entry < 0:
+            edge = f0 + (bucket + 1) / PER_EDGE
+            if edge > until + SLACK or (hold and cells[target].tag == tag and cells[target].g <= edge + SLACK):
+                reach = edge
+                break
             bucket += 1
             continue
         node, g = pool[entry].node, pool[entry].g
@@ -151,10 +192,9 @@ def field(
         if cells[node].g != g:
             continue
         expanded += 1
-        if used + length.size > pool.size:
-            return -1
-        x, y, z = coordinates(node, nx, ny)
         last = cells[node].last
+        cells[node].last = last | KNOWN
+        x, y, z = coordinates(node, nx, ny)
         ground = allowed[node] >> np.uint64(32)
         word = allowed[node] & after[last, 1 if ground == open_ground else 0]
         while word:
@@ -166,15 +206,16 @@ def field(
             cost = g + length[k]
             if cells[to].tag == tag and cost >= cells[to].g - 1e-12:
                 continue
-            ahead = octile(x + step[k, 2] - gx, y + step[k, 1] - gy, z + step[k, 0] - gz) if target >= 0 else 0.0
-            if cost + ahead > bound + SLACK:
-                continue
+            f = cost
+            if target >= 0:
+                f += octile(x + step[k, 2] - gx, y + step[k, 1] - gy, z + step[k, 0] - gz)
             cells[to].g = cost
             cells[to].tag = tag
             cells[to].last = k
-            spare, used = put(pool, head, max(bucket, int(cost * 2)), to, cost, spare, used)
+            spare, used = put(pool, head, max(bucket, int((f - f0) * PER_EDGE)), to, cost, spare, used)
             queued += 1
-    return expanded
+    queue[0], queue[1], queue[2], queue[3] = spare, used, queued, bucket
+    return reach, expanded
 
 
 @njit(cache=True, error_model="numpy")
@@ -183,12 +224,12 @@ def walk_back(cells: NDArray[np.void], offset: Ints, start: int, goal: int) -> I
     count = 1
     node = goal
     while node != start:
-        node -= offset[cells[node].last & (CLOSED - 1)]
+        node -= offset[cells[node].last & MOVE]
         count += 1
     path = np.empty(count, np.int64)
     node = goal
     for i in range(count - 1, -1, -1):
         path[i] = node
         if i:
-            node -= offset[cells[node].last & (CLOSED - 1)]
+            node -= offset[cells[node].last & MOVE]
     return path
