@@ -263,7 +263,7 @@ def section(tables_made: list[Table], command: str) -> Section:
             "adversarial: each is centred on the best path left when the earlier ones are blocked. *Naive* is one "
             "search per hypothesis with this very search, the moves near blocked regions patched; where fewer than 2^k "
             "hypotheses were checked its time is extrapolated. The joint time includes laying the regions on the grid. "
-            "Single, joint and naive times are taken by turns, in seven rounds, so that all three suffer alike when the "
+            "Single, joint and naive times are taken by turns, in seven rounds, so that all suffer alike when the "
             "machine slows down."
         ),
         tables=tables_made,

@@ -3,16 +3,30 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from mintpilot.core.compiled import compiled
+from mintpilot.core.geometry import Floats
 
 Grid32 = NDArray[np.float32]
 
 
-@njit(cache=True, nogil=True)
-def cast_rays(  # type: ignore[no-untyped-def] # numba infers the types
-    depth, stride, lens, pose, origin, resolution, log_odds, stamp, solid, tick, smoke, limits, weights
-):
+@compiled(nogil=True)
+def cast_rays(
+    depth: Grid32,
+    stride: int,
+    lens: tuple[float, float, float, float],
+    pose: Floats,
+    origin: Floats,
+    resolution: float,
+    log_odds: Grid32,
+    stamp: NDArray[np.int32],
+    solid: NDArray[np.int32],
+    tick: int,
+    smoke: NDArray[np.uint8],
+    limits: tuple[float, float, float],
+    weights: tuple[float, float, float, float],
+) -> None:
     """Updates ``log_odds``, ``stamp`` and ``solid`` in place from one depth picture.
 
     Every voxel changes at most once a frame, and a hit beats any number of misses: thin things such as rack posts
@@ -89,10 +103,22 @@ def cast_rays(  # type: ignore[no-untyped-def] # numba infers the types
             )
 
 
-@njit(cache=True, nogil=True)
-def _clear(  # type: ignore[no-untyped-def]
-    x, y, z, dx, dy, dz, end, log_odds, stamp, tick, smoke, miss, clamp
-):
+@compiled(nogil=True)
+def _clear(
+    x: float,
+    y: float,
+    z: float,
+    dx: float,
+    dy: float,
+    dz: float,
+    end: float,
+    log_odds: Grid32,
+    stamp: NDArray[np.int32],
+    tick: int,
+    smoke: NDArray[np.uint8],
+    miss: float,
+    clamp: float,
+) -> None:
     """Walks one ray in voxel units (Amanatides and Woo) up to, not into, the voxel in which it ends."""
     nz, ny, nx = log_odds.shape
     # Cut the ray to the lattice first, so that a camera outside of it works and no step is wasted.

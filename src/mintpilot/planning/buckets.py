@@ -13,10 +13,10 @@ from typing import Any, cast
 
 import numpy as np
 from llvmlite import ir  # type: ignore[import-untyped]
-from numba import njit
 from numba.extending import intrinsic
 from numpy.typing import NDArray
 
+from mintpilot.core.compiled import compiled
 from mintpilot.planning.moves import NO_MOVE
 
 CELL = np.dtype([("g", np.float64), ("tag", np.uint32), ("last", np.int32)])
@@ -53,14 +53,14 @@ lowest_bit: Callable[[np.uint64], int] = cast(Any, intrinsic)(_lowest_bit)
 """Index of the lowest bit that is set (the word must not be 0)."""
 
 
-@njit(cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def redundant(ground: np.uint64, detour: NDArray[np.uint32], last: int, k: int) -> bool:
     """Whether the free surroundings make move k needless after the last one (`mintpilot.planning.moves`)."""
     one, other = detour[last, k, 0], detour[last, k, 1]
     return bool(ground & one == one or ground & other == other)
 
 
-@njit(cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def octile(a: float, b: float, c: float) -> float:
     """Length of the shortest path over |a|, |b|, |c| cells of empty space."""
     a, b, c = abs(a), abs(b), abs(c)
@@ -70,7 +70,7 @@ def octile(a: float, b: float, c: float) -> float:
     return max(high, c) + 0.41421356237309515 * middle + 0.31783724519578205 * min(low, c)
 
 
-@njit(cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def coordinates(node: int, nx: int, ny: int) -> tuple[float, float, float]:
     """(x, y, z) of a node. Exact below 2^31 nodes, and faster than dividing whole numbers."""
     row = int((node + 0.5) * (1.0 / nx))
@@ -78,7 +78,7 @@ def coordinates(node: int, nx: int, ny: int) -> tuple[float, float, float]:
     return float(node - row * nx), float(row - layer * ny), float(layer)
 
 
-@njit(cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def begin(cells: NDArray[np.void], pool: NDArray[np.void], head: NDArray[np.int32], source: int, tag: int) -> None:
     """Queues the first node."""
     cells[source].g = 0.0
@@ -91,7 +91,7 @@ def begin(cells: NDArray[np.void], pool: NDArray[np.void], head: NDArray[np.int3
     head[0] = 0
 
 
-@njit(cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def put(
     pool: NDArray[np.void], head: NDArray[np.int32], bucket: int, node: int, g: float, spare: int, used: int
 ) -> tuple[int, int]:

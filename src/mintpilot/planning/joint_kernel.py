@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from mintpilot.core.compiled import compiled
 from mintpilot.core.geometry import Floats, Ints
 from mintpilot.planning.buckets import MOVE, PER_EDGE, RING, SLACK, lowest_bit, redundant
 from mintpilot.planning.joint_labels import DEAD, ON_SHORE, admit, append, numbered
@@ -17,7 +17,7 @@ SMALL = -1
 SPENT = -2
 
 
-@njit(cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def landings(
     shore: Ints, cells: NDArray[np.void], tag: int, safe: NDArray[np.void], safe_tag: int, bound: float
 ) -> tuple[Ints, Floats]:
@@ -34,7 +34,7 @@ def landings(
     return shore[order[:count]], due[order[:count]]
 
 
-@njit(cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def search_labels(
     allowed: Words,
     offset: Ints,

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from mintpilot.core.compiled import compiled
 from mintpilot.core.geometry import Floats
 from mintpilot.planning.buckets import KNOWN, RING
 
@@ -26,7 +26,7 @@ DEAD = 64
 FIRST = 32  # a node whose `last` is below has no label: it is still the move of the field
 
 
-@njit(cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def numbered(
     mask: np.uint64, sets: NDArray[np.void], index: NDArray[np.int32], known: int, bound: float, best: Floats
 ) -> int:
@@ -45,7 +45,7 @@ def numbered(
     return known
 
 
-@njit(cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def admit(
     pool: NDArray[np.void], cells: NDArray[np.void], sets: NDArray[np.void], to: int, cost: float, mask: np.uint64
 ) -> int:
@@ -70,7 +70,7 @@ def admit(
     return steps
 
 
-@njit(cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def append(
     pool: NDArray[np.void],
     cells: NDArray[np.void],
@@ -96,7 +96,7 @@ def append(
     head[slot] = new
 
 
-@njit(cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def forget(pool: NDArray[np.void], used: int, cells: NDArray[np.void]) -> None:
     """Takes all labels off their nodes, so that the search can begin anew."""
     for i in range(used):

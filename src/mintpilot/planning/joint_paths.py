@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from mintpilot.core.compiled import compiled
 from mintpilot.core.geometry import Floats, Ints
 from mintpilot.planning.buckets import MOVE
 from mintpilot.planning.joint_labels import DEAD, ON_SHORE
@@ -17,7 +17,7 @@ AIM = np.dtype([("mask", np.uint64), ("tag", np.uint32), ("last", np.int32)])
 that wrote this, and the move of the field search that led from the next node of that way to this one."""
 
 
-@njit(cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def take_aim(
     node: int,
     aims: NDArray[np.void],
@@ -61,7 +61,7 @@ def take_aim(
         last = cells[node].last & MOVE
 
 
-@njit(cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def traced(
     labels: Ints,
     costs: Floats,
@@ -107,7 +107,7 @@ def traced(
     return cells, ends, kinds
 
 
-@njit(cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def moves_of(
     label: int, pool: NDArray[np.void], safe: NDArray[np.void], aims: NDArray[np.void], offset: Ints, moves: Ints
 ) -> int:

@@ -7,9 +7,9 @@ Both are label-correcting: a node that is improved later is queued again. The co
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from mintpilot.core.compiled import compiled
 from mintpilot.core.geometry import Floats, Ints
 from mintpilot.planning.buckets import (
     CLOSED,
@@ -29,7 +29,7 @@ from mintpilot.planning.buckets import (
 from mintpilot.planning.lattice import Words
 
 
-@njit(cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def astar(
     allowed: Words,
     offset: Ints,
@@ -134,7 +134,7 @@ def astar(
     return best, expanded
 
 
-@njit(cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def field(
     allowed: Words,
     offset: Ints,
@@ -218,7 +218,7 @@ def field(
     return reach, expanded
 
 
-@njit(cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def walk_back(cells: NDArray[np.void], offset: Ints, start: int, goal: int) -> Ints:
     """Nodes (n,) from start to goal, along the moves that a search left in cells."""
     count = 1

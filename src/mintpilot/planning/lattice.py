@@ -15,9 +15,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 from numpy.typing import ArrayLike, NDArray
 
+from mintpilot.core.compiled import compiled
 from mintpilot.core.errors import MapError
 from mintpilot.core.geometry import Bools, Ints, frozen
 from mintpilot.planning.moves import MOVES_2D, MOVES_3D, Moves
@@ -132,7 +132,7 @@ def _swept(moves: Moves, around: Ints) -> Ints:
     return np.array(rows, np.int64)
 
 
-@njit(cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def allowed_moves(free: NDArray[np.uint8], around: Ints, needs: NDArray[np.uint32]) -> Words:
     """The word of every node; 0 for those that are not free."""
     allowed = np.zeros(free.size, np.uint64)
@@ -142,7 +142,7 @@ def allowed_moves(free: NDArray[np.uint8], around: Ints, needs: NDArray[np.uint3
     return allowed
 
 
-@njit(cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def moves_at(free: NDArray[np.uint8], around: Ints, needs: NDArray[np.uint32], node: int) -> np.uint64:
     """The word of one free node: a move is allowed if the block that it sweeps is free."""
     ground = np.uint64(0)

@@ -6,9 +6,9 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from mintpilot.core.compiled import compiled
 from mintpilot.core.geometry import Ints
 from mintpilot.planning.lattice import NEAR, Lattice, Words, moves_at
 
@@ -77,7 +77,7 @@ def _mark(lattice: Lattice, nodes: Ints) -> NDArray[np.uint8]:
     return free
 
 
-@njit(cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def _close(
     without: Words,
     near: Words,
@@ -102,7 +102,7 @@ def _close(
     return marked[:count].copy()
 
 
-@njit(cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def followed(
     path: Ints, rows: int, columns: int, offset: Ints, swept: Ints, region: NDArray[np.uint64]
 ) -> tuple[Ints, Ints, np.uint64]:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 
-import numba as nb
 import numpy as np
 
+from mintpilot.core.compiled import compiled
 from mintpilot.core.geometry import Bools, Floats
 from mintpilot.core.semantic_map import Cell, SemanticMap
 
@@ -92,7 +92,7 @@ def _directions(elevation_rad: tuple[float, float], rays: int = RAYS) -> tuple[F
     return np.stack([level * np.cos(turn), level * np.sin(turn), z], axis=1), 2 * math.pi * (high - low) / rays
 
 
-@nb.njit(cache=True)
+@compiled()
 def _seen(
     unknown: Bools,
     opaque: Bools,

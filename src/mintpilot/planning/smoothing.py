@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from itertools import pairwise
 
-import numba
 import numpy as np
 
-from mintpilot.core.geometry import Bools, Floats, GridFrame
+from mintpilot.core.compiled import compiled
+from mintpilot.core.geometry import Bools, Floats, GridFrame, Ints
 
 BORDER_CELLS = 1e-6
 """A point this near to the border of two cells (in cells) belongs to either; shorter passages do not count."""
@@ -71,8 +71,8 @@ def _densified(points_m: Floats, spacing_m: float) -> Floats:
     return np.concatenate(parts)
 
 
-@numba.njit(cache=True)
-def _point_clear(allowed, x, y, z):  # type: ignore[no-untyped-def]
+@compiled()
+def _point_clear(allowed: Bools, x: float, y: float, z: float) -> bool:
     nz, ny, nx = allowed.shape
     for k in range(int(np.floor(z - BORDER_CELLS)), int(np.floor(z + BORDER_CELLS)) + 1):
         for j in range(int(np.floor(y - BORDER_CELLS)), int(np.floor(y + BORDER_CELLS)) + 1):
@@ -82,8 +82,8 @@ def _point_clear(allowed, x, y, z):  # type: ignore[no-untyped-def]
     return False
 
 
-@numba.njit(cache=True)
-def _line_clear(allowed, a, b):  # type: ignore[no-untyped-def]
+@compiled()
+def _line_clear(allowed: Bools, a: Floats, b: Floats) -> bool:
     """Steps from border to border (Amanatides and Woo) and looks at the middle of each passage."""
     d = b - a
     length = np.sqrt((d * d).sum())
@@ -110,16 +110,16 @@ def _line_clear(allowed, a, b):  # type: ignore[no-untyped-def]
     return True
 
 
-@numba.njit(cache=True)
-def _blocked_pieces(allowed, points):  # type: ignore[no-untyped-def]
+@compiled()
+def _blocked_pieces(allowed: Bools, points: Floats) -> Bools:
     blocked = np.zeros(max(len(points) - 1, 0), np.bool_)
     for i in range(len(blocked)):
         blocked[i] = not _line_clear(allowed, points[i], points[i + 1])
     return blocked
 
 
-@numba.njit(cache=True)
-def _farthest_visible(allowed, points):  # type: ignore[no-untyped-def]
+@compiled()
+def _farthest_visible(allowed: Bools, points: Floats) -> Ints:
     """Indices of the points kept when each is followed by the farthest one that it sees."""
     kept = [0]
     here = 0
@@ -132,8 +132,8 @@ def _farthest_visible(allowed, points):  # type: ignore[no-untyped-def]
     return np.array(kept)
 
 
-@numba.njit(cache=True)
-def _turn(wanted, start, end, most):  # type: ignore[no-untyped-def]
+@compiled()
+def _turn(wanted: Floats, start: float, end: float, most: float) -> Floats:
     full = 2 * np.pi
     n = len(wanted)
     target = start

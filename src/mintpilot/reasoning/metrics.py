@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
+from mintpilot.core.compiled import compiled
 from mintpilot.core.geometry import Floats
 from mintpilot.core.ports import ImpactMetric
 
@@ -25,7 +25,7 @@ def resample(path_m: Floats, samples: int = SAMPLES) -> Floats:
     return points
 
 
-@njit(cache=True)
+@compiled()
 def _frechet(a: Floats, b: Floats) -> float:
     """Discrete Frechet distance by dynamic programming, one row at a time."""
     n, m = a.shape[0], b.shape[0]

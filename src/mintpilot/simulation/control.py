@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numba
 import numpy as np
 
+from mintpilot.core.compiled import compiled
 from mintpilot.core.geometry import Floats
 from mintpilot.simulation.quadrotor import Airframe
 
@@ -91,8 +91,8 @@ def slewed(yaw_rad: Floats, start_rad: float, most_rad: float) -> Floats:
     return np.asarray(_slewed(np.asarray(yaw_rad, float), start_rad, most_rad))
 
 
-@numba.njit(cache=True)
-def _slewed(yaw, start, most):  # type: ignore[no-untyped-def]
+@compiled()
+def _slewed(yaw: Floats, start: float, most: float) -> Floats:
     out = np.empty(len(yaw))
     now = start
     for i in range(len(yaw)):
@@ -102,8 +102,22 @@ def _slewed(yaw, start, most):  # type: ignore[no-untyped-def]
     return out
 
 
-@numba.njit(cache=True)
-def _control(p, q, v, w, ref, gains, mass, inertia, mixer, most, step, integral, out):  # type: ignore[no-untyped-def]
+@compiled()
+def _control(
+    p: Floats,
+    q: Floats,
+    v: Floats,
+    w: Floats,
+    ref: Floats,
+    gains: Floats,
+    mass: float,
+    inertia: Floats,
+    mixer: Floats,
+    most: float,
+    step: float,
+    integral: Floats,
+    out: Floats,
+) -> None:
     # Wanted force: errors of place and speed, their integral, the reference's acceleration, weight.
     force = np.empty(3)
     for i in range(3):

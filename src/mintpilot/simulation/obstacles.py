@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 
-import numba
 import numpy as np
 
+from mintpilot.core.compiled import compiled
 from mintpilot.core.geometry import Box, Floats, Ints
 from mintpilot.simulation.scene import Person, Scene, Shape, Solid
 
@@ -89,8 +89,10 @@ def _walls(volume: Box, thickness_m: float = 10.0) -> list[Solid]:
     return [Solid(id="outer wall", kind="wall", extent_m=Box(lo_m=(*lo, z0), hi_m=(*hi, z1))) for lo, hi in sides]
 
 
-@numba.njit(cache=True)
-def _first_touch(position, mission_s, shape, lo, hi, appears, radius):  # type: ignore[no-untyped-def]
+@compiled()
+def _first_touch(
+    position: Floats, mission_s: Floats, shape: Ints, lo: Floats, hi: Floats, appears: Floats, radius: float
+) -> tuple[int, int]:
     for i in range(len(position)):
         x, y, z = position[i]
         for k in range(len(shape)):

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numba as nb
 import numpy as np
 from numpy.typing import NDArray
+
+from mintpilot.core.compiled import compiled
 
 _Grid = NDArray[np.float32]
 
@@ -62,7 +63,7 @@ def corrupt(depth_m: _Grid, *, focal_px: float, settings: SensorSettings, rng: n
     return faulty
 
 
-@nb.njit(cache=True)
+@compiled()
 def _corrupt(
     depth: _Grid,
     normal: _Grid,

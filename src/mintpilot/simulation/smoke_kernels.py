@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import numba as nb
 import numpy as np
 from numpy.typing import NDArray
 
+from mintpilot.core.compiled import compiled
 from mintpilot.core.geometry import Floats
 
 SMOKE_EXTINCTION_PER_M = 2.4
@@ -21,7 +21,7 @@ MOST_STEPS = 28
 _Grid = NDArray[np.float32]
 
 
-@nb.njit(fastmath=True, cache=True)
+@compiled(fastmath=True)
 def _density(noise: _Grid, x: float, y: float, z: float) -> float:
     """Trilinear sample of the periodic noise; x, y, z in its cells."""
     n = noise.shape[0]
@@ -37,7 +37,7 @@ def _density(noise: _Grid, x: float, y: float, z: float) -> float:
     return value
 
 
-@nb.njit(fastmath=True, cache=True)
+@compiled(fastmath=True)
 def _nearby(noise: _Grid, x: float, y: float, z: float) -> float:
     """Sample of the periodic noise without interpolation: for detail that jitter blurs anyway."""
     n = noise.shape[0]
@@ -45,7 +45,7 @@ def _nearby(noise: _Grid, x: float, y: float, z: float) -> float:
     return value
 
 
-@nb.njit(fastmath=True, cache=True)
+@compiled(fastmath=True)
 def _span(pose: Floats, d: Floats, lo: Floats, hi: Floats, far: float) -> tuple[float, float]:
     """Part of a ray inside a box, in units of depth along the axis; empty when the second is not above the first."""
     near = 0.02
@@ -61,7 +61,7 @@ def _span(pose: Floats, d: Floats, lo: Floats, hi: Floats, far: float) -> tuple[
     return near, far
 
 
-@nb.njit(fastmath=True, cache=True)
+@compiled(fastmath=True)
 def march_smoke(
     rgb: NDArray[np.uint8],
     depth: _Grid,
@@ -127,7 +127,7 @@ def march_smoke(
                 sensed[v, u] = hit
 
 
-@nb.njit(fastmath=True, cache=True)
+@compiled(fastmath=True)
 def march_flame(
     rgb: NDArray[np.uint8],
     depth: _Grid,

@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from mintpilot.core.compiled import compiled
 from mintpilot.core.errors import LimitError
 from mintpilot.core.geometry import Bools, Floats, Ints
 from mintpilot.core.ports import QueryObjective, QuerySituation
@@ -157,7 +157,7 @@ class _Programme:
         return bound
 
 
-@njit(cache=True)
+@compiled()
 def huffman(weights: Floats) -> Floats:
     """For each row (s, n) the mean length of Huffman's code for its heaviest weights, cut off at a sum of 1."""
     out = np.zeros(len(weights))
