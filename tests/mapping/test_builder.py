@@ -219,6 +219,37 @@ def test_nobody_flies_through_flames() -> None:
     assert state_at(made.snapshot(), (4.3, 3.3, 0.5), (4.8, 3.3, 0.5), (5.6, 3.3, 0.9)) == [2, 2, 1]
 
 
+def test_flames_count_from_the_first_glimpse_and_nobody_flies_over_them() -> None:
+    made = looked_around([])
+    flames = Box(lo_m=(4, 3, 0.2), hi_m=(4.6, 3.6, 1.0))
+    made.integrate(
+        see(ROOM, [], pose((1.0, 3.0, 1.5), 0.0)), (Detection(label="fire", score=0.9, box_m=flames, frame_index=98),)
+    )
+    assert state_at(made.snapshot(), (4.3, 3.3, 0.5), (4.3, 3.3, 2.7), (5.6, 3.3, 2.1)) == [2, 2, 1]
+
+
+def test_smoke_that_glows_hides_flames_between_its_lit_fronts() -> None:
+    cloud = Box(lo_m=(3.0, 2.0, 0.0), hi_m=(5.0, 4.0, 3.0))
+    made = builder()
+    for index, (x, turn) in enumerate(itertools.product((0.5, 7.5), np.arange(0, 2 * math.pi, 0.5))):
+        frame, smoke = cloud_in(see(ROOM, [], pose((x, 3.0, 1.5), float(turn), 0.1)), cloud, index)
+        found = []
+        if smoke is not None and smoke.points_m is not None:
+            low = smoke.points_m[(smoke.points_m[:, 2] < 1.0) & (np.abs(smoke.points_m[:, 1] - 3.0) < 0.3)]
+            found = [smoke]
+            if len(low):
+                box = Box(lo_m=tuple(low.min(0).tolist()), hi_m=tuple(low.max(0).tolist()))
+                found.append(Detection(label="glow", score=0.9, box_m=box, points_m=low, frame_index=index))
+        made.integrate(frame, tuple(found))
+    map = made.snapshot()
+    assert [o.label for o in map.objects] == []
+    (region,) = map.regions
+    passable = made.snapshot(map.with_region(region.id, Knowledge.YES))
+    inside = state_at(passable, (3.1, 3.0, 0.5), (4.0, 3.0, 0.5), (4.0, 3.0, 2.0), (4.9, 3.0, 0.5))
+    assert inside == [Cell.OCCUPIED] * 4
+    assert state_at(passable, (4.0, 2.1, 0.7), (4.0, 3.9, 0.7)) == [Cell.FREE, Cell.FREE]
+
+
 def test_the_foot_of_flames_is_nobody_but_somebody_beside_them_is() -> None:
     made = builder()
     frame = see(ROOM, [], pose((1.0, 3.0, 1.5), 0.0))

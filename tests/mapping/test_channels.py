@@ -51,6 +51,29 @@ def test_a_dead_end_keeps_room_to_go_into() -> None:
     assert not near[2, 13:27, 20].any()
 
 
+def test_flames_are_not_kept_away_from_like_walls() -> None:
+    cloud, solid, free = hall((14, 26), 5)
+    flames = np.zeros_like(solid)
+    flames[:, 8:18, 26:28] = True  # at the cloud's edge, behind one side of the gap
+    cloud &= ~flames
+    free &= ~flames
+    shy = hugging(cloud, solid | flames, free, resolution_m=RES_M, hull_m=HULL_M)
+    bold = hugging(cloud, solid | flames, free, ends=flames, resolution_m=RES_M, hull_m=HULL_M)
+    assert shy[1, 18, 22:25].any()
+    assert not bold[1, 18:22, 20:26].any()
+
+
+def test_a_side_way_does_not_pull_the_lane_out_of_the_middle() -> None:
+    cloud, solid, free = hall((14, 26), 5)
+    rack = np.zeros_like(solid)
+    rack[:, 24:27, :14] = True  # its end leaves a narrow way in beside the hidden wall
+    free &= ~rack
+    near = hugging(cloud, solid | rack, free, resolution_m=RES_M, hull_m=HULL_M)
+    assert near[1, 9:14, 20].all()
+    assert not near[1, 19:22, 20].any()
+    assert not near[1, 28:30, 14].any()  # north of the rack one still gets in
+
+
 def test_a_narrow_gap_stays_open() -> None:
     cloud, solid, free = hall((16, 24), 1)
     near = hugging(cloud, solid, free, resolution_m=RES_M, hull_m=HULL_M)

@@ -15,6 +15,7 @@ from mintpilot.core.trajectory import VehicleState
 from mintpilot.mission.lookout import PATIENCE_LOOKS, Lookout
 from mintpilot.mission.retreat import is_stranded, way_back
 from mintpilot.planning.checks import check_path
+from mintpilot.planning.flyable import known_flyable
 from mintpilot.planning.reach import LookAround, next_view, way_to
 from mintpilot.planning.sight import inspect, news_m3
 
@@ -88,6 +89,28 @@ def test_the_way_back_never_goes_through_matter() -> None:
     cells = world.cells.copy()
     cells[:, :, 25] = Cell.OCCUPIED
     assert way_back(replace(world, cells=cells), LIMITS, at(6.0), WAY[:51]) is None
+
+
+def test_what_is_flyable_behind_a_wall_is_no_place_to_start_from() -> None:
+    cells = hall().cells.copy()
+    cells[:, :, 25:31] = Cell.UNKNOWN
+    cells[:, :, 31] = Cell.OCCUPIED
+    boxed_in, dot = replace(hall(), cells=cells), VehicleLimits(radius_m=0.05, margin_m=0.0)
+    assert known_flyable(boxed_in, dot)[5, 10, 32]  # 0.4 m away, behind the wall
+    assert is_stranded(boxed_in, dot, at(6.1))
+    cells = cells.copy()
+    cells[:, :, 31] = Cell.FREE
+    assert not is_stranded(replace(hall(), cells=cells.copy()), dot, at(6.1))
+
+
+def test_the_way_back_may_use_up_the_margin() -> None:
+    world = with_cloud(hall(), (4.0, 7.0))
+    cells = world.cells.copy()
+    cells[:, 11, 22:25] = Cell.OCCUPIED  # 0.2 m from the track's line: nearer than radius and margin, not than radius
+    tight = replace(world, cells=cells)
+    narrow = replace(LIMITS, radius_m=0.15, margin_m=0.15)
+    assert check_path(WAY[30:51], tight, narrow) != ""
+    assert way_back(tight, narrow, at(6.0), WAY[:51]) is not None
 
 
 def test_without_a_track_there_is_no_way_back() -> None:

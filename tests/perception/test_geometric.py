@@ -119,6 +119,60 @@ def test_a_cloud_is_smoke_by_its_soft_depth_alone() -> None:
     assert (right - left) * (bottom - top) > 0.7 * inside.sum()
 
 
+def cloud_ahead(colour: tuple[int, int, int]) -> Frame:
+    """A cloud 2.6 m ahead: soft depth, hardly any contrast."""
+    clear = picture([], pitch_rad=0.2)
+    rng = np.random.default_rng(0)
+    depth, rgb = clear.depth_m.copy(), clear.rgb.copy()
+    inside = np.zeros(depth.shape, bool)
+    inside[40:200, 110:230] = True
+    inside &= depth > 3.0
+    depth[inside] = 2.6 + rng.exponential(0.12, int(inside.sum()))
+    rgb[inside] = (150, 146, 140)
+    lit = inside.copy()
+    lit[:, :150] = lit[:, 190:] = False
+    rgb[lit] = colour
+    return Frame(time_s=0.0, rgb=rgb, depth_m=depth, camera=clear.camera, world_from_camera=clear.world_from_camera)
+
+
+@pytest.mark.parametrize(
+    ("colour", "glows"), [((205, 130, 88), True), ((150, 146, 140), False), ((88, 130, 205), False)]
+)
+def test_smoke_glows_in_the_light_of_flames(colour: tuple[int, int, int], glows: bool) -> None:
+    found = detect(cloud_ahead(colour))
+    assert [d for d in found if d.label == "smoke"]
+    assert bool([d for d in found if d.label == "glow"]) == glows
+    assert not [d for d in found if d.label == "fire"]
+
+
+def test_a_wall_seen_edge_on_is_no_smoke() -> None:
+    eye = (0.0, 0.0, 1.4)
+    clear = picture(
+        [Block(lo_m=(0.5, 0.12, 0.0), hi_m=(6.0, 2.0, 2.6), colour=(0.5, 0.5, 0.5))], eye=eye, pitch_rad=0.0
+    )
+    rng = np.random.default_rng(2)
+    depth = clear.depth_m.copy()
+    lens = clear.camera
+    v, u = np.mgrid[: lens.height, : lens.width] + 0.5
+    across, up = (u - lens.cx) / lens.fx * depth, (v - lens.cy) / lens.fy * depth
+    side = (np.abs(across + 0.12) < 0.03) & (depth > 0.55) & (depth < 6.0)
+    assert side.sum() > 1000
+    rays_m = np.sqrt(depth**2 + across**2 + up**2)
+    lost = side & (rng.random(depth.shape) < 0.6)  # a sensor gets few returns from a surface seen edge-on
+    rough = side & ~lost
+    depth[rough] += rng.normal(0, 0.25, int(rough.sum())) * (depth[rough] / rays_m[rough])
+    depth[lost] = np.nan
+    # What is left lies in the wall's plane: each return is where its ray meets it, further away or nearer.
+    frame = Frame(
+        time_s=0.0,
+        rgb=clear.rgb,
+        depth_m=depth.astype(np.float32),
+        camera=lens,
+        world_from_camera=clear.world_from_camera,
+    )
+    assert not [d for d in detect(frame) if d.label == "smoke"]
+
+
 def test_a_noisier_sensor_does_not_make_smoke_of_walls() -> None:
     clear = picture([a_box(0.5, PAINTS["red"])])
     rng = np.random.default_rng(1)

@@ -13,7 +13,9 @@ from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import dijkstra
 
 from mintpilot.core.errors import InfeasibleError, MapError
+from mintpilot.planning.distance_field import DistanceField
 from mintpilot.planning.grid_search import GridSearch, distance_field, shortest_path
+from mintpilot.planning.workspace import Workspace
 
 DATA = Path(__file__).resolve().parents[3] / "shared" / "data" / "planning"
 needs_data = pytest.mark.skipif(not DATA.is_dir(), reason="published maps are not beside the project (../shared/data)")
@@ -117,6 +119,46 @@ def test_equals_an_independent_dijkstra(shape: tuple[int, int, int], blocked: fl
             assert found is not None
             assert found[0] == pytest.approx(expected[goal], abs=1e-9)
             check_path(free, start, goal, *found)
+
+
+@settings(deadline=None, max_examples=60)
+@given(
+    shape=st.sampled_from([(1, 20, 30), (1, 40, 9), (5, 8, 9)]),
+    blocked=st.sampled_from([0.0, 0.1, 0.3]),
+    seed=st.integers(0, 100_000),
+    step=st.sampled_from([0.3, 2.0, 50.0]),
+)
+def test_a_field_grown_piece_by_piece_is_exact_and_guides_exactly(
+    shape: tuple[int, int, int], blocked: float, seed: int, step: float
+) -> None:
+    rng = np.random.default_rng(seed)
+    free = rng.random(shape) >= blocked
+    start, goal = (tuple(int(rng.integers(n)) for n in shape) for _ in range(2))
+    free[start] = free[goal] = True
+    graph = no_corner_graph(free)
+    expected = dijkstra(graph, indices=np.ravel_multi_index(goal, shape)).reshape(shape)
+    search = GridSearch(free)
+    lattice = search.lattice
+    ends = lattice.node(start), lattice.node(goal)
+    ahead = DistanceField(lattice, Workspace(lattice.size), ends[1], ends[0], lattice.allowed)
+    ahead.grow(hold=True)
+    assert ahead.at(ends[0]) == pytest.approx(expected[start])
+    if np.isfinite(expected[start]):
+        # Fewer moves than the field was grown over: some cells are closed.
+        closed = free & (rng.random(shape) >= 0.1)
+        closed[start] = closed[goal] = True
+        fewer = GridSearch(closed).lattice.allowed
+        alone = dijkstra(no_corner_graph(closed), indices=np.ravel_multi_index(start, shape)).reshape(shape)
+        cost, _ = search.node_path(*ends, fewer, ahead)
+        assert cost == pytest.approx(alone[goal], abs=1e-9)
+    for _ in range(4):
+        ahead.grow(ahead.reach + step)
+        apart = np.abs(np.argwhere(np.ones(shape, bool)) - start)
+        apart.sort(axis=1)
+        octile = apart @ np.array([3**0.5 - 2**0.5, 2**0.5 - 1, 1.0])
+        sure = (expected.ravel() + octile < ahead.reach) & np.isfinite(expected.ravel())
+        nodes = lattice.nodes_of_flat(np.flatnonzero(sure))
+        assert np.allclose(ahead.everywhere()[nodes], expected.ravel()[sure], atol=1e-9)
 
 
 def test_start_is_goal() -> None:

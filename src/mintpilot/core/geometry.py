@@ -53,6 +53,9 @@ class Box:
         return inside
 
 
+_FARTHEST = 2.0**53
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class GridFrame:
     """The lattice of a voxel map. Arrays over it are indexed ``[z, y, x]``; a 2D map has ``nz == 1``."""
@@ -91,8 +94,9 @@ class GridFrame:
     def cells_of(self, points_m: ArrayLike) -> Ints:
         """Cells (n, 3) ``[z, y, x]`` of world points (n, 3) ``[x, y, z]``; they may lie outside the grid."""
         points = np.atleast_2d(np.asarray(points_m, float))
-        cells: Ints = np.floor((points - self.origin_m) / self.resolution_m).astype(np.int64)[:, ::-1]
-        return cells
+        cells = np.floor((points - self.origin_m) / self.resolution_m)
+        # Places so far off that their cell is no whole number any more are outside all the same.
+        return np.clip(cells, -_FARTHEST, _FARTHEST).astype(np.int64)[:, ::-1]
 
     def centres_of(self, cells: ArrayLike) -> Floats:
         """World centres (n, 3) ``[x, y, z]``, metres, of cells (n, 3) ``[z, y, x]``."""

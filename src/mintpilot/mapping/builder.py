@@ -70,7 +70,7 @@ class MapBuilder:
         smoke = self._clouds.add(found)
         eye = np.asarray(frame.world_from_camera[:3, 3], float)
         for detection in found:
-            if detection.label != "smoke":
+            if detection.label not in ("smoke", "glow"):
                 self._tracks.add(detection, eye)
         lens = frame.camera
         stride = max(1, int(np.ceil(np.sqrt(frame.depth_m.size / settings.max_rays))))
@@ -136,13 +136,12 @@ class MapBuilder:
             hull_m=self._limits.radius_m + self._limits.margin_m,
         )
         objects = fused_objects(self._tracks.all, draft)
-        blazing = np.zeros(self._frame.shape, bool)
-        for thing in objects:
-            if thing.label == "fire":
-                blazing |= cells_in(self._frame, self._blaze(thing.box_m)) & self._inside
+        flames = [thing.box_m for thing in objects if thing.label == "fire"]
+        blazing = self._blazing(flames)
         evidence = Evidence(solid=self._solid, free=cells == Cell.FREE, blazing=blazing)
         clouds = self._clouds.clouds(evidence, self._volume, self._settings)
         cells[self._clouds.front_of(clouds, self._solid) & (cells == Cell.OCCUPIED)] = Cell.UNKNOWN
+        blazing |= self._blazing(self._clouds.lit_boxes(clouds, flames, self._settings))
         cells[blazing] = Cell.OCCUPIED  # flames return hardly any depth, yet nobody flies through them
         cells[self._flown & self._inside] = Cell.FREE
         regions = fused_regions(clouds, draft, self._priors[0])
@@ -152,13 +151,13 @@ class MapBuilder:
             # the whole of it, and mapping goes on in flight, so that a solid thing hidden in it is seen when near.
             if region.kind is RegionKind.SMOKE:
                 here = flat[region.cells]
-                unsure = (here == Cell.UNKNOWN) & self._hugging(region, cells, known)
+                unsure = (here == Cell.UNKNOWN) & self._hugging(region, cells, blazing, known)
                 flat[region.cells] = np.where((here == Cell.OCCUPIED) | unsure, here, Cell.FREE)
         rooms = fused_rooms(self._tracks.all, draft, self._priors[1])
         self._last = SemanticMap(frame=self._frame, cells=cells, objects=objects, regions=regions, rooms=rooms)
         return self._last
 
-    def _hugging(self, cloud: Region, cells: NDArray[np.uint8], known: SemanticMap | None) -> Bools:
+    def _hugging(self, cloud: Region, cells: NDArray[np.uint8], blazing: Bools, known: SemanticMap | None) -> Bools:
         """Which of the cloud's cells (n,) are too near to something solid to be counted on.
 
         Once the drone may fly in it, its way there stays as it was: what was free in the map before stays so.
@@ -169,6 +168,7 @@ class MapBuilder:
             mask,
             cells == Cell.OCCUPIED,
             cells == Cell.FREE,
+            ends=blazing,
             resolution_m=self._frame.resolution_m,
             hull_m=self._limits.radius_m + self._limits.margin_m,
         )
@@ -176,12 +176,16 @@ class MapBuilder:
             near &= known.cells != Cell.FREE
         return np.asarray(near.reshape(-1)[cloud.cells])
 
-    def _blaze(self, flames: Box) -> Box:
-        """Where flames may reach: they move, and only their brightest part is recognised."""
-        reach = self._settings.fire_margin_m
-        (x0, y0, _), (x1, y1, z1) = flames.lo_m, flames.hi_m
-        floor = min(self._volume.lo_m[2], flames.lo_m[2])
-        return Box(lo_m=(x0 - reach, y0 - reach, floor), hi_m=(x1 + reach, y1 + reach, z1 + reach))
+    def _blazing(self, flames: list[Box]) -> Bools:
+        """Where flames may reach: they move, only their brightest part is recognised, and nobody flies over them."""
+        blazing = np.zeros(self._frame.shape, bool)
+        reach, floor, roof = self._settings.fire_margin_m, self._volume.lo_m[2], self._volume.hi_m[2]
+        for box in flames:
+            (x0, y0, z0), (x1, y1, z1) = box.lo_m, box.hi_m
+            lo, hi = (x0 - reach, y0 - reach, min(floor, z0)), (x1 + reach, y1 + reach, max(roof, z1))
+            blazing |= cells_in(self._frame, Box(lo_m=lo, hi_m=hi))
+        blazing &= self._inside
+        return blazing
 
     def _voxels(self) -> NDArray[np.uint8]:
         cells = np.full(self._frame.shape, Cell.UNKNOWN, np.uint8)

@@ -38,11 +38,7 @@ class Draft:
 def fused_objects(tracks: Sequence[Track], draft: Draft) -> tuple[MapObject, ...]:
     """Objects seen often or surely enough, doors left out; ids from the previous map by nearness."""
     settings = draft.settings
-    kept = [
-        t
-        for t in tracks
-        if t.label != "door" and (len(t.frames) >= 2 or t.score >= settings.sure_score) and not _roofed(t, draft)
-    ]
+    kept = [t for t in tracks if t.label != "door" and _credible(t, settings) and not _roofed(t, draft)]
     people = [t for t in kept if t.label == "person"]
     fires = [t for t in kept if t.label == "fire"]
     kept = [t for t in kept if not any(_limb_of(t, p) for p in people) and not any(_foot_of(t, f) for f in fires)]
@@ -74,13 +70,16 @@ def fused_regions(clouds: Sequence[Cloud], draft: Draft, prior_passable: float) 
     inside = cells_in(draft.frame, draft.volume)
     result: list[Region] = []
     for i, (cloud, mask) in enumerate(zip(clouds, masks, strict=True)):
+        cells = np.flatnonzero(mask & inside & ~solid).astype(np.int64)
+        if not cells.size:
+            continue  # flames fill all of it: there is nothing to ask
         mine = smokes[pairs[i]] if i in pairs else None
         answers = {r.passable for r, n in zip(smokes, shared[i], strict=True) if n > 0}
         result.append(
             Region(
                 id=mine.id if mine else draft.names.new("smoke"),
                 kind=RegionKind.SMOKE,
-                cells=np.flatnonzero(mask & inside & ~solid).astype(np.int64),
+                cells=cells,
                 passable=_joint(answers),
                 prior_passable=mine.prior_passable if mine else prior_passable,
                 description=descriptions[i],
@@ -136,6 +135,11 @@ def _order(identity: str) -> tuple[str, int]:
 
 def _colour(track: Track) -> str:
     return next((f"{a.value} " for a in track.attributes if a.name == "colour"), "")
+
+
+def _credible(track: Track, settings: MappingSettings) -> bool:
+    """Seen twice, or surely once; a danger counts as soon as it is seen."""
+    return len(track.frames) >= 2 or track.score >= settings.sure_score or track.label == "fire"
 
 
 def _limb_of(track: Track, person: Track) -> bool:

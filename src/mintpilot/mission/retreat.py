@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from mintpilot.core.errors import InfeasibleError
 from mintpilot.core.geometry import Floats
 from mintpilot.core.plan import VehicleLimits
-from mintpilot.core.semantic_map import Knowledge, SemanticMap
+from mintpilot.core.semantic_map import Cell, Knowledge, SemanticMap
 from mintpilot.core.trajectory import Trajectory, VehicleState
 from mintpilot.planning.checks import check_trajectory
 from mintpilot.planning.flyable import known_flyable
+from mintpilot.planning.terrain import start_cell
 from mintpilot.planning.trajectory import plan_trajectory
 
-SLACK_M = 0.5
-"""Planning starts from flyable space at most this far away."""
 LONGEST_M = 8.0
 """Further back than this the world may have changed as well."""
 APART_M = 0.2
@@ -22,19 +23,19 @@ APART_M = 0.2
 
 
 def is_stranded(map: SemanticMap, limits: VehicleLimits, state: VehicleState) -> bool:
-    """Whether no known flyable space is near enough to plan from: a cloud was found around the drone, say."""
-    cells = np.argwhere(known_flyable(map, limits))
-    if not len(cells):
+    """Whether no plan could start from where the drone is: a cloud was found around it, say."""
+    try:
+        start_cell(map.frame, known_flyable(map, limits), map.cells != Cell.FREE, state.position_m)
+    except InfeasibleError:
         return True
-    offsets = np.linalg.norm(map.frame.centres_of(cells) - np.asarray(state.position_m), axis=1)
-    return bool(offsets.min() > SLACK_M)
+    return False
 
 
 def way_back(map: SemanticMap, limits: VehicleLimits, state: VehicleState, track_m: Floats) -> Trajectory | None:
     """The trajectory back along the track to the nearest known flyable place; None where there is none.
 
     Where the drone has just been it may be again: regions that were found around it since do not bar the way out of
-    them. Voxels do.
+    them. Voxels do, but the margin that plans keep from them may be used up.
 
     Args:
         map: what is known.
@@ -60,7 +61,7 @@ def way_back(map: SemanticMap, limits: VehicleLimits, state: VehicleState, track
 
 
 def _trajectory(map: SemanticMap, limits: VehicleLimits, state: VehicleState, path_m: Floats) -> Trajectory | None:
-    opened = map
+    opened, limits = map, replace(limits, margin_m=0.0)
     for region in map.regions:
         opened = opened.with_region(region.id, Knowledge.YES)
     try:

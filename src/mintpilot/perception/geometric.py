@@ -11,7 +11,7 @@ from mintpilot.core.ports import Perception
 from mintpilot.perception.boxes import box_around, pixel_box
 from mintpilot.perception.doors import find_doors
 from mintpilot.perception.settings import PerceptionSettings
-from mintpilot.perception.smoke import find_smoke, smoke_mask
+from mintpilot.perception.smoke import find_glow, find_smoke, smoke_mask
 from mintpilot.perception.solids import standing_patches
 from mintpilot.perception.things import name_patch
 from mintpilot.perception.view import View, as_floats, look_at
@@ -44,6 +44,7 @@ class GeometricPerception(Perception):
         hazy = smoke_mask(view, self._settings)
         fires, burning = find_fire(view, index, self._settings)
         found = find_smoke(view, hazy & ~burning, index, self._settings) + fires
+        found += find_glow(view, hazy & ~burning, index, self._settings)
         found += find_doors(view, hazy, index, self._settings)
         for patch in standing_patches(view, hazy | burning, self._settings):
             thing = name_patch(view, patch, index, self._settings)

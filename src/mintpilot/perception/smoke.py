@@ -21,6 +21,18 @@ _USUAL = 0.6
 """Median deviation of a return from its neighbours' mean, in standard deviations, as the settings have them."""
 _STEP_M = 0.4
 """Higher steps of the depth from pixel to pixel, besides the sensor's noise, are outlines."""
+_EMBER_HUES = (8.0, 45.0)
+"""Hue of smoke in the light of flames, degrees."""
+_LIT = 0.5
+"""Smoke of that hue is grey but for flames near by: from this saturation on they are within a metre or so."""
+_IN_PLANE = 0.8
+"""This share of the returns from a surface …"""
+_PLANE_M = 0.04
+"""… lies this near to its plane; those from a cloud come from tenths of a metre of depth."""
+_SAMPLE = 500
+"""About so many points tell whether a patch is flat."""
+_LEAST_POINTS = 12
+"""Fewer tell nothing."""
 _THIN = 7
 """Every n-th point of a cloud is enough for the map."""
 
@@ -41,8 +53,26 @@ def smoke_mask(view: View, settings: PerceptionSettings) -> Bools:
     labels, count = label(weak)
     seeds = np.bincount(labels[weak & soft & (rough >= settings.rough)], minlength=count + 1)
     seeds[0] = 0
-    grown = (seeds >= settings.least_smoke_pixels / 3)[labels]
+    likely = seeds >= settings.least_smoke_pixels / 3
+    for number in np.flatnonzero(likely):
+        likely[number] = not _is_flat(view, (labels == number) & valid)
+    grown = likely[labels]
     return np.asarray(maximum_filter(grown, 7) & (contrast <= 2 * settings.flat_contrast), bool)
+
+
+def _is_flat(view: View, patch: Bools) -> bool:
+    """Whether the patch is one surface seen edge-on: many returns get lost there too, but the others lie in a plane."""
+    points = as_floats(view.points_m[patch])
+    points = points[:: max(1, len(points) // _SAMPLE)]
+    if len(points) < _LEAST_POINTS:
+        return False
+    near = np.ones(len(points), bool)
+    for _ in range(3):  # least squares, then twice more without the strays
+        centre = points[near].mean(axis=0)
+        normal = np.linalg.svd(points[near] - centre, full_matrices=False)[2][2]
+        off = np.abs((points - centre) @ normal)
+        near = off <= np.percentile(off, 100 * _IN_PLANE)
+    return bool(np.percentile(off, 100 * _IN_PLANE) < _PLANE_M)
 
 
 def _outlines(view: View) -> Bools:
@@ -75,8 +105,19 @@ def _surface_roughness(view: View, off: Singles, settings: PerceptionSettings) -
     return max(1.0, float(np.median(off[floor])) / _USUAL)
 
 
+def find_glow(view: View, mask: Bools, index: int, settings: PerceptionSettings) -> list[Detection]:
+    """One detection per patch of smoke that flames inside or right behind it light up; the flames are not seen."""
+    low, high = _EMBER_HUES
+    lit = mask & (view.saturation >= _LIT) & (view.hue > low) & (view.hue < high)
+    return _patches(view, lit, "glow", index, settings)
+
+
 def find_smoke(view: View, mask: Bools, index: int, settings: PerceptionSettings) -> list[Detection]:
     """One detection per connected patch of smoke."""
+    return _patches(view, mask, "smoke", index, settings)
+
+
+def _patches(view: View, mask: Bools, name: str, index: int, settings: PerceptionSettings) -> list[Detection]:
     labels, count = label(mask)
     found = []
     for number in range(1, count + 1):
@@ -87,7 +128,7 @@ def find_smoke(view: View, mask: Bools, index: int, settings: PerceptionSettings
         points = as_floats(view.points_m[patch][::_THIN])
         found.append(
             Detection(
-                label="smoke",
+                label=name,
                 score=min(0.99, 0.5 + size / 4000),
                 box_m=box_around(points),
                 pixels=pixel_box(patch),
