@@ -82,7 +82,7 @@ class Detection:
     """One object found in one frame."""
 
     label: str
-    """Semantic class: ``box``, ``person``, ``fire``, ``smoke``, ``door``, ``rack`` …"""
+    """Semantic class: ``box``, ``person``, ``fire``, ``smoke``, ``glow`` (of flames hidden in smoke), ``door`` …"""
     score: float
     """Confidence, 0 to 1."""
     box_m: Box

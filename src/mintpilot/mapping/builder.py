@@ -14,6 +14,7 @@ from mintpilot.core.plan import VehicleLimits
 from mintpilot.core.semantic_map import Cell, Knowledge, Region, SemanticMap
 from mintpilot.mapping.channels import hugging
 from mintpilot.mapping.fusion import Draft, fused_objects, fused_regions, fused_rooms
+from mintpilot.mapping.glow import Glow
 from mintpilot.mapping.identity import Names
 from mintpilot.mapping.objects import Tracks
 from mintpilot.mapping.rays import cast_rays
@@ -56,6 +57,7 @@ class MapBuilder:
         self._tick = 0
         self._tracks = Tracks()
         self._clouds = Clouds(frame)
+        self._glow = Glow(frame)
         self._names = Names()
         self._last: SemanticMap | None = None
 
@@ -68,6 +70,7 @@ class MapBuilder:
         found = tuple(detections)
         settings = self._settings
         smoke = self._clouds.add(found)
+        self._glow.add(found)
         eye = np.asarray(frame.world_from_camera[:3, 3], float)
         for detection in found:
             if detection.label not in ("smoke", "glow"):
@@ -141,7 +144,7 @@ class MapBuilder:
         evidence = Evidence(solid=self._solid, free=cells == Cell.FREE, blazing=blazing)
         clouds = self._clouds.clouds(evidence, self._volume, self._settings)
         cells[self._clouds.front_of(clouds, self._solid) & (cells == Cell.OCCUPIED)] = Cell.UNKNOWN
-        blazing |= self._blazing(self._clouds.lit_boxes(clouds, flames, self._settings))
+        blazing |= self._blazing(self._glow.boxes(clouds, flames, self._clouds.seen))
         cells[blazing] = Cell.OCCUPIED  # flames return hardly any depth, yet nobody flies through them
         cells[self._flown & self._inside] = Cell.FREE
         regions = fused_regions(clouds, draft, self._priors[0])

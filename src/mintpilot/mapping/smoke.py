@@ -19,11 +19,6 @@ STRAY = 0.12
 FREE_BETWEEN = 0.25
 """With no more than this share of known free space between them, two near clouds are one."""
 
-LIGHT_M = 2.0
-"""Flames light smoke up to this far."""
-LEAST_LIT_M3 = 0.05
-"""Less smoke than this in the light of flames is a reflection."""
-
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Evidence:
@@ -55,20 +50,12 @@ class Clouds:
         """(nz, ny, nx) number of frames that showed smoke in a voxel."""
         self.against: NDArray[np.int32] = np.zeros(frame.shape, np.int32)
         """(nz, ny, nx) number of frames that looked through a voxel."""
-        self.lit: NDArray[np.int32] = np.zeros(frame.shape, np.int32)
-        """(nz, ny, nx) number of frames that showed smoke in the light of flames in a voxel."""
         self._views: list[tuple[Floats, tuple[int, int, int, int, int], float]] = []
 
     def add(self, detections: tuple[Detection, ...]) -> NDArray[np.uint8]:
         """Counts the smoke of one frame; returns where it is, (nz, ny, nx) uint8, one voxel wider than the points."""
         mask = np.zeros(self._frame.shape, np.uint8)
         for detection in detections:
-            if detection.label == "glow" and detection.points_m is not None:
-                lit = np.zeros(self._frame.shape, bool)
-                cells = self._frame.cells_of(detection.points_m)
-                z, y, x = cells[self._frame.contains(cells)].T
-                lit[z, y, x] = True
-                self.lit += lit
             if detection.label != "smoke" or detection.points_m is None or not len(detection.points_m):
                 continue
             cells = self._frame.cells_of(detection.points_m)
@@ -86,31 +73,6 @@ class Clouds:
     def contradict(self, clear: Bools) -> None:
         """Counts the voxels (nz, ny, nx) that one frame looked through."""
         self.against += clear
-
-    def lit_boxes(self, clouds: list[Cloud], flames: list[Box], settings: MappingSettings) -> list[Box]:
-        """Boxes around what hidden flames light up in each cloud. They are somewhere between its lit fronts.
-
-        Args:
-            clouds: where.
-            flames: those that were seen; they explain the light around them.
-            settings: how far two fronts of one cloud may be apart.
-        """
-        lit = (self.lit >= 2) & (2 * self.lit >= self.seen)
-        for box in flames:
-            lo, hi = np.asarray(box.lo_m) - LIGHT_M, np.asarray(box.hi_m) + LIGHT_M
-            lit &= ~cells_in(self._frame, Box(lo_m=(lo[0], lo[1], lo[2]), hi_m=(hi[0], hi[1], hi[2])))
-        boxes, edge = [], self._frame.resolution_m
-        for cloud in clouds if lit.any() else []:
-            mask = lit & cells_in(self._frame, cloud.box_m)
-            reach = 2 * max(1, round(settings.widest_inside_m / edge / 2)) + 1
-            labels, _ = ndimage.label(ndimage.maximum_filter(mask.astype(np.uint8), size=reach))
-            for number in np.unique(labels[mask]):
-                cells = np.argwhere(mask & (labels == number))[:, ::-1]
-                if len(cells) * edge**3 >= LEAST_LIT_M3:
-                    lo, hi = cells.min(axis=0), cells.max(axis=0) + 1
-                    (x0, y0, z0), (x1, y1, z1) = (np.asarray(self._frame.origin_m) + edge * c for c in (lo, hi))
-                    boxes.append(Box(lo_m=(float(x0), float(y0), float(z0)), hi_m=(float(x1), float(y1), float(z1))))
-        return boxes
 
     def front_of(self, clouds: list[Cloud], solid: NDArray[np.int32]) -> Bools:
         """Voxels (nz, ny, nx) in clouds that are no more than a front taken for something solid now and then.

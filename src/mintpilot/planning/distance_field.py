@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from mintpilot.core.geometry import Floats
-from mintpilot.planning import buckets, kernels
+from mintpilot.planning import buckets
+from mintpilot.planning.field_kernel import field
 from mintpilot.planning.lattice import Lattice, Words
 from mintpilot.planning.workspace import Workspace
 
@@ -43,7 +44,7 @@ class DistanceField:
         lattice, work, moves = self.lattice, self.work, self.lattice.moves
         self.reach = buckets.FULL
         while self.reach == buckets.FULL:
-            self.reach, expanded = kernels.field(
+            self.reach, expanded = field(
                 self.allowed,
                 lattice.offset,
                 moves.step,
