@@ -39,8 +39,8 @@ def section(kinematic: Measured, mujoco: Measured | None, command: str) -> Secti
         mint = _row(mujoco, "mint")
         notes.append(
             f"In MuJoCo `mint` succeeds in {percent(mint.success_rate_possible or 0.0)} of {mint.n_possible} possible "
-            "worlds. Worlds 0 to 99 and 1000 to 1099 were looked at while perception and mapping were mended; worlds "
-            "from 3000 on were not before this run."
+            "worlds. Worlds 0 to 99, 1000 to 1099 and 2100 to 2123 were looked at while perception and mapping were "
+            "mended; worlds from 3000 on were not before this run."
         )
     for measured in (kinematic, mujoco):
         if measured is not None:
