@@ -100,7 +100,8 @@ def test_painted_wall_without_leaf_is_no_door() -> None:
     assert not [d for d in detect(picture([wall], eye=(0.0, 0.0, 1.4), pitch_rad=0.1)) if d.label == "door"]
 
 
-def test_a_cloud_is_smoke_by_its_soft_depth_alone() -> None:
+def cloud_ahead(colour: tuple[int, int, int] = (150, 146, 140)) -> tuple[Frame, np.ndarray]:
+    """A cloud 2.6 m ahead, soft in depth and without contrast, its middle in that colour; and its pixels."""
     clear = picture([], pitch_rad=0.2)
     rng = np.random.default_rng(0)
     depth, rgb = clear.depth_m.copy(), clear.rgb.copy()
@@ -110,7 +111,15 @@ def test_a_cloud_is_smoke_by_its_soft_depth_alone() -> None:
     depth[inside] = 2.6 + rng.exponential(0.12, int(inside.sum()))
     depth[inside & (rng.random(depth.shape) < 0.2)] = np.nan
     rgb[inside] = (150, 146, 140)
+    middle = inside.copy()
+    middle[:, :150] = middle[:, 190:] = False
+    rgb[middle] = colour
     frame = Frame(time_s=0.0, rgb=rgb, depth_m=depth, camera=clear.camera, world_from_camera=clear.world_from_camera)
+    return frame, inside
+
+
+def test_a_cloud_is_smoke_by_its_soft_depth_alone() -> None:
+    frame, inside = cloud_ahead()
     (smoke,) = [d for d in detect(frame) if d.label == "smoke"]
     assert smoke.points_m is not None
     ahead = (smoke.points_m - frame.world_from_camera[:3, 3]) @ frame.world_from_camera[:3, 2]
@@ -119,27 +128,11 @@ def test_a_cloud_is_smoke_by_its_soft_depth_alone() -> None:
     assert (right - left) * (bottom - top) > 0.7 * inside.sum()
 
 
-def cloud_ahead(colour: tuple[int, int, int]) -> Frame:
-    """A cloud 2.6 m ahead: soft depth, hardly any contrast."""
-    clear = picture([], pitch_rad=0.2)
-    rng = np.random.default_rng(0)
-    depth, rgb = clear.depth_m.copy(), clear.rgb.copy()
-    inside = np.zeros(depth.shape, bool)
-    inside[40:200, 110:230] = True
-    inside &= depth > 3.0
-    depth[inside] = 2.6 + rng.exponential(0.12, int(inside.sum()))
-    rgb[inside] = (150, 146, 140)
-    lit = inside.copy()
-    lit[:, :150] = lit[:, 190:] = False
-    rgb[lit] = colour
-    return Frame(time_s=0.0, rgb=rgb, depth_m=depth, camera=clear.camera, world_from_camera=clear.world_from_camera)
-
-
 @pytest.mark.parametrize(
     ("colour", "glows"), [((205, 130, 88), True), ((150, 146, 140), False), ((88, 130, 205), False)]
 )
 def test_smoke_glows_in_the_light_of_flames(colour: tuple[int, int, int], glows: bool) -> None:
-    found = detect(cloud_ahead(colour))
+    found = detect(cloud_ahead(colour)[0])
     assert [d for d in found if d.label == "smoke"]
     assert bool([d for d in found if d.label == "glow"]) == glows
     assert not [d for d in found if d.label == "fire"]
