@@ -23,6 +23,8 @@ DEAD_END_M = 0.5
 """Distance kept where the cloud leads nowhere: whoever wants to go into it must still find room."""
 RING_M = 0.6
 """What is connected is judged in a ring of this width around the cloud, besides the vehicle's own size."""
+CONTEXT_M = 6.0
+"""Ground further away from the cloud than this does not matter."""
 ROOMY_M2 = 4.0
 """Pockets of free ground smaller than this need not stay connected."""
 TALL_M = 0.6
@@ -55,21 +57,23 @@ def hugging(
     found = np.argwhere(cloud)
     if not len(found) or not solid.any():
         return near
-    layers = slice(int(found[:, 0].min()), int(found[:, 0].max()) + 1)
-    inside, hard = np.asarray(cloud[layers].any(axis=0), bool), solid[layers]
+    reach = int(np.ceil(CONTEXT_M / resolution_m)) * np.array([0, 1, 1])
+    lo, hi = np.maximum(found.min(axis=0) - reach, 0), found.max(axis=0) + 1 + reach
+    part = tuple(slice(int(a), int(b)) for a, b in zip(lo, hi, strict=True))
+    inside, hard = np.asarray(cloud[part].any(axis=0), bool), solid[part]
     tall = hard.sum(axis=0) * resolution_m >= TALL_M
     beside = hard.any(axis=0) & tall & ndimage.binary_dilation(inside, np.ones((3, 3), bool), iterations=TOUCHING)
     if ends is not None:
-        beside &= ~ends[layers].any(axis=0)
+        beside &= ~ends[part].any(axis=0)
     if not beside.any():
         return near
-    passable = ((cloud | free)[layers] & (_away_m(hard, resolution_m) >= hull_m)).mean(axis=0) >= MOST_LAYERS
+    passable = ((cloud | free)[part] & (_away_m(hard, resolution_m) >= hull_m)).mean(axis=0) >= MOST_LAYERS
     around = ndimage.binary_dilation(inside, iterations=int(np.ceil((RING_M + hull_m) / resolution_m)) + 1)
     shore = _roomy(passable & ~inside, resolution_m) & around
     away_m = _away_m(beside[None], resolution_m)[0]
     lanes = _lanes(shore, passable & inside, away_m, resolution_m, hull_m + BREADTH_M)
     keep = away_m >= DEAD_END_M if lanes is None else lanes | (away_m >= SHY_M)
-    near[layers] = cloud[layers] & ~free[layers] & ~keep
+    near[part] = cloud[part] & ~free[part] & ~keep
     return near
 
 
