@@ -9,9 +9,6 @@ from __future__ import annotations
 
 import argparse
 import json
-import subprocess
-import sys
-import tempfile
 import time
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
@@ -23,6 +20,7 @@ from typing import TypeVar
 import numpy as np
 
 from bench.search_baselines import PlainC, Scipy, Skimage, compiled
+from bench.search_memory import peak_mib
 from bench.search_occupancy import depot
 from bench.search_worlds import Cell3, World, adversarial_regions, far_pairs, warehouse_2d, warehouse_3d
 from bench.sections import Section, Table, keep
@@ -160,32 +158,6 @@ def joint_rows(plan: list[tuple[World, tuple[int, ...]]], pairs: int, most: int)
     return rows
 
 
-def peak_mib(k: int) -> float:
-    """Peak memory of a fresh process, all libraries included, that plans once on 256 x 256 x 64 cells, MiB."""
-    world = warehouse_3d(256, 256, 64, (6, 8, 20))
-    ends = far_pairs(world, 1)[0]
-    regions = adversarial_regions(world, ends, k, k)
-    with tempfile.TemporaryDirectory() as folder:
-        file = Path(folder) / "world.npz"
-        sizes = [len(r) for r in regions]
-        np.savez(file, free=world.free, ends=np.array(ends), cells=np.concatenate(regions), sizes=np.array(sizes))
-        command = [sys.executable, "-m", "bench.search", "--peak", str(file)]
-        done = subprocess.run(command, capture_output=True, text=True, check=True)
-    return float(done.stdout)
-
-
-def print_peak(file: Path) -> None:
-    """What `peak_mib` runs."""
-    data = np.load(file)
-    regions = np.split(data["cells"], np.cumsum(data["sizes"])[:-1])
-    found = JointSearch(data["free"], regions).between(*data["ends"])
-    if not found.complete:
-        raise AssertionError("the search did not finish")
-    # Not getrusage: its peak is handed down from the parent process.
-    status = Path("/proc/self/status").read_text()
-    print(int(status.split("VmHWM:")[1].split()[0]) / 1024)
-
-
 def grouped(rows: list[T], key: Callable[[T], tuple[object, ...]]) -> dict[tuple[object, ...], list[T]]:
     """Rows by key, in the order of their first appearance."""
     groups: dict[tuple[object, ...], list[T]] = {}
@@ -274,11 +246,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--quick", action="store_true", help="small grids, one pair each; writes nothing")
     parser.add_argument("--json", type=Path, help="file for the rows")
-    parser.add_argument("--peak", type=Path, help=argparse.SUPPRESS)
     options = parser.parse_args()
-    if options.peak:
-        print_peak(options.peak)
-        return
     flat, flat_big = warehouse_2d(512), warehouse_2d(1024)
     hall, hall_big = warehouse_3d(100, 75, 20, (3, 4, 6)), warehouse_3d(200, 150, 40, (5, 6, 12))
     if options.quick:
