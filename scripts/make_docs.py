@@ -12,8 +12,8 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from mintpilot.mission.reader import json_schema
-from mintpilot.mission.schema import MissionFile
+from mintpilot.mission_file.reader import json_schema
+from mintpilot.mission_file.schema import MissionFile
 
 DOCS = Path(__file__).parents[1] / "docs"
 SCHEMA = MissionFile.model_json_schema()

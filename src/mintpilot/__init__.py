@@ -17,11 +17,11 @@ __version__ = "0.1.0"
 
 _PLACES = {
     "DeliberationReport": "mintpilot.assembly.deliberation",
-    "MissionFile": "mintpilot.mission.schema",
+    "MissionFile": "mintpilot.mission_file.schema",
     "MissionRecord": "mintpilot.recording.record",
     "check_mission": "mintpilot.assembly.api",
     "plan_mission": "mintpilot.assembly.api",
-    "read_mission": "mintpilot.mission.reader",
+    "read_mission": "mintpilot.mission_file.reader",
     "read_record": "mintpilot.recording.record",
     "run_mission": "mintpilot.assembly.api",
 }

@@ -11,7 +11,7 @@ from mintpilot.assembly.worlds import build_world
 from mintpilot.core.mission import Outcome
 from mintpilot.core.plan import Site, Stop
 from mintpilot.core.task import Action
-from mintpilot.mission.reader import read_mission
+from mintpilot.mission_file.reader import read_mission
 from mintpilot.simulation.judge import SceneJudge
 
 MAP = "type octile\nheight 8\nwidth 12\nmap\n" + "\n".join(["@" * 12, *["@" + "." * 10 + "@"] * 6, "@" * 12]) + "\n"

@@ -33,7 +33,7 @@ from mintpilot.core.ports import BetterWords, Operator, Understand
 from mintpilot.core.query import Answer, Question, Reply
 from mintpilot.language.doubles import FunctionModel
 from mintpilot.mission.loop import fly_mission
-from mintpilot.mission.schema import MissionFile
+from mintpilot.mission_file.schema import MissionFile
 from mintpilot.recording.recorders import MemoryRecorder
 from mintpilot.simulation.truth import SceneTruth
 

@@ -19,7 +19,7 @@ from mintpilot.core.mission import Outcome
 from mintpilot.core.ports import Completion, LanguageModel
 from mintpilot.core.query import Command, Reply
 from mintpilot.language.doubles import FunctionModel
-from mintpilot.mission.schema import LanguageSpec, MissionFile
+from mintpilot.mission_file.schema import LanguageSpec, MissionFile
 
 
 class Clock:

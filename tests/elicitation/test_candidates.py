@@ -7,7 +7,7 @@ from mintpilot.core.gap import GapKind
 from mintpilot.core.mission import AskingSettings
 from mintpilot.core.query import Combine, SayingKind
 from mintpilot.elicitation.candidates import candidate_queries, gap_literals
-from mintpilot.elicitation.ease import ease
+from mintpilot.elicitation.phrasing_cost import phrasing_cost
 from mintpilot.reasoning.belief import prior_belief
 from mintpilot.reasoning.metrics import FrechetMetric
 from mintpilot.reasoning.tree import build_tree
@@ -70,7 +70,7 @@ def test_cuts_divide_and_no_two_divide_alike(seed: int) -> None:
         assert not row.all()
         seen.add((row ^ row[0]).tobytes())
     assert len(seen) == len(queries)
-    assert list(queries) == sorted(queries, key=ease)
+    assert list(queries) == sorted(queries, key=phrasing_cost)
 
 
 def test_a_refused_cut_is_not_asked_in_other_words() -> None:

@@ -6,7 +6,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mintpilot.mapping.channels import hugging
+from mintpilot.mapping.corridors import hugging
 
 RES_M, HULL_M = 0.2, 0.4
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from mintpilot.mission.schema import MissionFile
+from mintpilot.mission_file.schema import MissionFile
 
 HALL = {"lo_m": [0.0, 0.0, 0.0], "hi_m": [12.0, 8.0, 3.0]}
 

@@ -15,7 +15,7 @@ from mintpilot.core.query import Answer, Command, Reply
 from mintpilot.core.tree import StopReason
 from mintpilot.interaction.scripted import FunctionOperator, RecordedOperator
 from mintpilot.mission.loop import fly_mission
-from mintpilot.mission.schema import MissionFile
+from mintpilot.mission_file.schema import MissionFile
 from mintpilot.recording.recorders import MemoryRecorder
 
 

@@ -9,8 +9,8 @@ from typing import TypeAlias, cast
 
 from mintpilot.assembly.crews import Choices, VehicleChoice, crew_for, scripted_operator, thinking_parts
 from mintpilot.assembly.deliberation import DeliberationReport, deliberation_report
-from mintpilot.assembly.soundness import unsound_parts
 from mintpilot.assembly.talk import Talk, talk_for
+from mintpilot.assembly.validation import validation_problems
 from mintpilot.assembly.worlds import World, build_world
 from mintpilot.core.errors import UnknownNameError
 from mintpilot.core.events import Event
@@ -20,8 +20,8 @@ from mintpilot.mission.account import first_accounts
 from mintpilot.mission.loop import fly_mission
 from mintpilot.mission.mind import Mind
 from mintpilot.mission.preview import preview
-from mintpilot.mission.reader import Problem, find_problems, read_mission
-from mintpilot.mission.schema import MissionFile
+from mintpilot.mission_file.reader import Problem, find_problems, read_mission
+from mintpilot.mission_file.schema import MissionFile
 from mintpilot.reasoning.belief import prior_belief
 from mintpilot.recording.in_memory import HistoryRecorder
 from mintpilot.recording.record import MissionRecord
@@ -39,7 +39,7 @@ def check_mission(path: str | Path) -> list[Problem]:
 
     A file of sound form is built as well, so that names, parameters and the instruction are known to be usable.
     """
-    return find_problems(path) or unsound_parts(path, read_mission(path))
+    return find_problems(path) or validation_problems(path, read_mission(path))
 
 
 def plan_mission(

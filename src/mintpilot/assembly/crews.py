@@ -20,8 +20,8 @@ from mintpilot.mapping.builder import MapBuilder
 from mintpilot.mission.eyes import CameraEyes, Eyes, FixedEyes
 from mintpilot.mission.loop import Crew
 from mintpilot.mission.mind import Thinking
-from mintpilot.mission.schema import OperatorSpec
 from mintpilot.mission.survey import survey
+from mintpilot.mission_file.schema import OperatorSpec
 from mintpilot.simulation.kinematic import KinematicSimulator
 from mintpilot.simulation.mujoco_vehicle import MujocoSimulator
 from mintpilot.simulation.scene_eyes import SceneEyes

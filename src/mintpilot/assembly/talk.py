@@ -21,7 +21,7 @@ from mintpilot.language.short_answers import understand_in
 from mintpilot.language.translating import ENGLISH, wording_for
 from mintpilot.language.wording import ModelWording, Wording
 from mintpilot.mission.rewording import Improve
-from mintpilot.mission.schema import LanguageSpec
+from mintpilot.mission_file.schema import LanguageSpec
 
 TEMPLATE = "template"
 """Name of the model that is none."""

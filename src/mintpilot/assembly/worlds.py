@@ -17,12 +17,12 @@ from mintpilot.core.ports import TruthOracle
 from mintpilot.core.semantic_map import SemanticMap
 from mintpilot.core.task import Task
 from mintpilot.language.instruction import parse_instruction
-from mintpilot.mission.schema import MissionFile
-from mintpilot.mission.schema_base import attributes_of, place_of
-from mintpilot.mission.schema_core import asking_of, correlations_of, limits_of, mission_of, task_of, truths_of
-from mintpilot.mission.schema_map import map_of
-from mintpilot.mission.schema_scene import ClosedRoomSpec, PersonSpec, SceneSpec
-from mintpilot.mission.schema_world import MapWorld, ScenarioWorld, SceneWorld
+from mintpilot.mission_file.schema import MissionFile
+from mintpilot.mission_file.schema_base import attributes_of, place_of
+from mintpilot.mission_file.schema_core import asking_of, correlations_of, limits_of, mission_of, task_of, truths_of
+from mintpilot.mission_file.schema_map import map_of
+from mintpilot.mission_file.schema_scene import ClosedRoomSpec, PersonSpec, SceneSpec
+from mintpilot.mission_file.schema_world import MapWorld, ScenarioWorld, SceneWorld
 from mintpilot.simulation.map_scene import scene_of_map
 from mintpilot.simulation.scenarios import Scenario, make_scenario
 from mintpilot.simulation.scene import ClosedRoom, FlightRules, Person, Scene, Shape, Smoke, Solid

@@ -16,8 +16,8 @@ from mintpilot.core.geometry import Box, Floats, GridFrame, Ints
 from mintpilot.core.mission import AskingSettings, CriticalityRule
 from mintpilot.core.semantic_map import Cell as Voxel
 from mintpilot.core.semantic_map import MapObject, SemanticMap
-from mintpilot.mission.schema import MissionFile
-from mintpilot.mission.schema_world import ScenarioWorld
+from mintpilot.mission_file.schema import MissionFile
+from mintpilot.mission_file.schema_world import ScenarioWorld
 from mintpilot.simulation.scenarios import make_scenario
 
 

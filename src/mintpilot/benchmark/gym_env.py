@@ -32,7 +32,7 @@ from mintpilot.core.plan import Plan
 from mintpilot.core.tree import LeafReason, Mint, Node, ScoredQuery
 from mintpilot.elicitation.wording import word_question
 from mintpilot.mission.mind import Mind, Thinking, Thought, learn, think
-from mintpilot.mission.schema import OperatorSpec
+from mintpilot.mission_file.schema import OperatorSpec
 from mintpilot.reasoning.belief import prior_belief
 from mintpilot.reasoning.classes import demands
 from mintpilot.strategies.exhaustive import best_about

@@ -21,7 +21,7 @@ from mintpilot.core.mission import Outcome, Verdict
 from mintpilot.core.ports import Planner
 from mintpilot.core.semantic_map import SemanticMap
 from mintpilot.mission.loop import Crew, fly_mission
-from mintpilot.mission.schema import LanguageSpec, OperatorSpec
+from mintpilot.mission_file.schema import LanguageSpec, OperatorSpec
 
 RAISED = "raised"
 """Outcome of a trial whose method, or a part under it, raised an exception."""

@@ -20,7 +20,7 @@ from mintpilot.benchmark.tables import print_summary
 from mintpilot.cli.bench_flags import BenchFlags
 from mintpilot.cli.exits import ExitCode
 from mintpilot.core.errors import MissingPartError
-from mintpilot.mission.schema import LanguageSpec
+from mintpilot.mission_file.schema import LanguageSpec
 
 JSON_VERSION = 1
 

@@ -29,7 +29,7 @@ def check_file(path: Path, *, as_json: bool) -> ExitCode:
 
 def print_schema() -> ExitCode:
     """Prints the JSON Schema of mission files."""
-    from mintpilot.mission.reader import json_schema
+    from mintpilot.mission_file.reader import json_schema
 
     sys.stdout.write(json_schema())
     return ExitCode.SUCCESS

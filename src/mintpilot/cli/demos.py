@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Literal, TypeAlias
 
 from mintpilot.core.errors import UnknownNameError
-from mintpilot.mission.reader import read_mission
-from mintpilot.mission.schema import MissionFile
+from mintpilot.mission_file.reader import read_mission
+from mintpilot.mission_file.schema import MissionFile
 
 DemoName: TypeAlias = Literal["fire-warehouse", "medicine"]
 DEMOS: tuple[DemoName, ...] = ("fire-warehouse", "medicine")

@@ -44,7 +44,7 @@ def fly(path: Path, options: FlightOptions) -> ExitCode:
     """Flies the mission in that file, tells how it goes, and prints the report, or as JSON its summary."""
     from mintpilot.assembly.api import run_mission
     from mintpilot.cli.progress import LenientConsole, Narrator
-    from mintpilot.mission.reader import read_mission
+    from mintpilot.mission_file.reader import read_mission
     from mintpilot.recording.run_folder import new_run_path
     from mintpilot.recording.run_summary import summary
     from mintpilot.recording.terminal_report import print_report

@@ -11,13 +11,13 @@ nothing, or raises `mintpilot.core.errors.ConformanceError`, which says what was
 
 from __future__ import annotations
 
-from mintpilot.conformance.completing import check_language_model
-from mintpilot.conformance.flying import check_vehicle
-from mintpilot.conformance.keeping import check_recorder
-from mintpilot.conformance.operators import check_operator
-from mintpilot.conformance.planning import check_metric, check_planner
-from mintpilot.conformance.seeing import check_perception
-from mintpilot.conformance.strategies import check_objective, check_strategy
+from mintpilot.conformance.language_model import check_language_model
+from mintpilot.conformance.operator import check_operator
+from mintpilot.conformance.perception import check_perception
+from mintpilot.conformance.planner import check_metric, check_planner
+from mintpilot.conformance.recorder import check_recorder
+from mintpilot.conformance.strategy import check_objective, check_strategy
+from mintpilot.conformance.vehicle import check_vehicle
 
 __all__ = [
     "check_language_model",

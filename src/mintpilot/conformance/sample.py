@@ -9,7 +9,7 @@ from pathlib import Path
 from mintpilot.assembly.worlds import World, build_world
 from mintpilot.core.errors import ConformanceError
 from mintpilot.core.plan import PlanningProblem
-from mintpilot.mission.schema import MissionFile
+from mintpilot.mission_file.schema import MissionFile
 from mintpilot.uncertainty.findings import find_gaps, frame_problem
 
 

@@ -17,7 +17,7 @@ from mintpilot.core.gap import PASSABLE, PRESENT, GapKind, Joint, KnowledgeGap
 from mintpilot.core.geometry import Bools, Vec3, frozen
 from mintpilot.core.query import Combine, Literal, Query, Saying, SayingKind
 from mintpilot.core.tree import Mint
-from mintpilot.elicitation.ease import ease
+from mintpilot.elicitation.phrasing_cost import phrasing_cost
 from mintpilot.elicitation.referents import referent_literals
 from mintpilot.elicitation.sentences import is_sayable
 
@@ -105,7 +105,7 @@ class _Language:
 def _language(gaps: tuple[KnowledgeGap, ...], start_m: Vec3 | None) -> _Language:
     literals = {g.id: gap_literals(g, start_m) for g in gaps}
     known = {g.id: g for g in gaps}
-    ranked = sorted(set(_queries(literals, gaps)), key=ease)
+    ranked = sorted(set(_queries(literals, gaps)), key=phrasing_cost)
     sayable = tuple(q for q in ranked if len(q.literals) == 1 or is_sayable(q, known))
     return _Language(queries=sayable, tables={})
 

@@ -11,9 +11,9 @@ from mintpilot.core.mission import AskingSettings, CriticalityRule
 from mintpilot.core.ports import QueryObjective, QuerySituation
 from mintpilot.core.query import Query
 from mintpilot.core.tree import Mint, ScoredQuery
-from mintpilot.elicitation.ease import ease
 from mintpilot.elicitation.objectives.information_gain import class_gain_bits
 from mintpilot.elicitation.objectives.value_of_information import regret_saved_s
+from mintpilot.elicitation.phrasing_cost import phrasing_cost
 from mintpilot.elicitation.truth import truth_row
 
 TOLERANCE = 1e-9
@@ -113,7 +113,7 @@ def choose(
 
 def rank(scored: Collection[ScoredQuery]) -> tuple[ScoredQuery, ...]:
     """Best first; ties by ease of saying, then by id."""
-    return tuple(sorted(scored, key=lambda s: (-round(s.score, SAME), *ease(s.query))))
+    return tuple(sorted(scored, key=lambda s: (-round(s.score, SAME), *phrasing_cost(s.query))))
 
 
 def merge(*lists: Collection[ScoredQuery]) -> tuple[ScoredQuery, ...]:

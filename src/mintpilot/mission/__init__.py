@@ -1,1 +1,1 @@
-"""The loop, whole, on one page; mission files."""
+"""The mission: its state, its events, one step, and the loop around it."""

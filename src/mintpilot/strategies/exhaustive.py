@@ -9,7 +9,7 @@ from mintpilot.core.ports import Ask, Decision, Situation, Strategy
 from mintpilot.core.query import Query
 from mintpilot.core.tree import Mint, ScoredQuery, StopReason
 from mintpilot.elicitation.candidates import gap_literals
-from mintpilot.elicitation.ease import ease
+from mintpilot.elicitation.phrasing_cost import phrasing_cost
 from mintpilot.reasoning.entropy import entropy_bits
 from mintpilot.reasoning.safety import known_passable
 from mintpilot.strategies.flying import best_safe_plan, fly, fly_cautiously, questions_left, tree_of
@@ -52,7 +52,7 @@ def best_about(gap: KnowledgeGap, situation: Situation) -> ScoredQuery | None:
                     query=query, score=gain, gain_bits=max(gain, 0.0), regret_saved_s=0.0, yes_probability=heard
                 )
             )
-    return min(found, key=lambda s: (-round(s.score, 9), *ease(s.query)), default=None)
+    return min(found, key=lambda s: (-round(s.score, 9), *phrasing_cost(s.query)), default=None)
 
 
 def is_known(gap: KnowledgeGap, situation: Situation) -> bool:

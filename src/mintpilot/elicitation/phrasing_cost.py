@@ -24,6 +24,6 @@ def effort(query: Query) -> float:
 
 
 @lru_cache(maxsize=1 << 14)
-def ease(query: Query) -> tuple[float, str]:
+def phrasing_cost(query: Query) -> tuple[float, str]:
     """Orders cuts: easier ones first, then by id."""
     return effort(query), query.id

@@ -12,9 +12,9 @@ from mintpilot.core.semantic_map import Knowledge, MapObject, Region, Room, Sema
 from mintpilot.mapping.movingai import load_movingai
 from mintpilot.mapping.occupancy import load_ros_map
 from mintpilot.mapping.outline import cells_in_box, cells_in_polygon, regions_from_mask
-from mintpilot.mission.schema import PriorsSpec
-from mintpilot.mission.schema_base import attributes_of, place_of
-from mintpilot.mission.schema_world import MapWorld, ObjectSpec, RegionSpec, RoomSpec
+from mintpilot.mission_file.schema import PriorsSpec
+from mintpilot.mission_file.schema_base import attributes_of, place_of
+from mintpilot.mission_file.schema_world import MapWorld, ObjectSpec, RegionSpec, RoomSpec
 
 ROS_SUFFIXES = (".yaml", ".yml")
 MOVINGAI_SUFFIXES = (".map", ".3dmap")

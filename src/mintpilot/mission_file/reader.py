@@ -1,7 +1,7 @@
 """Reads a mission file and finds every mistake in it.
 
-In three steps, each only when the one before found nothing: the YAML, the form (`mintpilot.mission.schema`), and what
-only the whole file and its map can tell (`mintpilot.mission.reader_sense`).
+In three steps, each only when the one before found nothing: the YAML, the form (`mintpilot.mission_file.schema`), and
+what only the whole file and its map can tell (`mintpilot.mission_file.semantic_checks`).
 """
 
 from __future__ import annotations
@@ -15,10 +15,10 @@ from typing import TypeAlias
 from pydantic import ValidationError
 
 from mintpilot.core.errors import MissionError
-from mintpilot.mission.reader_form import FormWords
-from mintpilot.mission.reader_sense import contradictions
-from mintpilot.mission.reader_yaml import Document, Fault, Path_, read_document
-from mintpilot.mission.schema import MissionFile
+from mintpilot.mission_file.form_checks import FormWords
+from mintpilot.mission_file.schema import MissionFile
+from mintpilot.mission_file.semantic_checks import contradictions
+from mintpilot.mission_file.yaml_places import Document, Fault, Path_, read_document
 
 Place: TypeAlias = Path_
 """The way to a key of a mission file, from the top: ``("world", "regions", 0, "box")``."""

@@ -9,13 +9,13 @@ from mintpilot.assembly.registry import load
 from mintpilot.assembly.worlds import build_world, scenario_of
 from mintpilot.core.errors import MintPilotError
 from mintpilot.language.instruction import parse_instruction
-from mintpilot.mission.reader import Place, Problem, place_problems
-from mintpilot.mission.schema import MissionFile
-from mintpilot.mission.schema_world import ScenarioWorld
+from mintpilot.mission_file.reader import Place, Problem, place_problems
+from mintpilot.mission_file.schema import MissionFile
+from mintpilot.mission_file.schema_world import ScenarioWorld
 from mintpilot.uncertainty.findings import find_gaps
 
 
-def unsound_parts(path: str | Path, file: MissionFile) -> list[Problem]:
+def validation_problems(path: str | Path, file: MissionFile) -> list[Problem]:
     """Every mistake that shows when the parts of a mission of sound form are made, in the order of its lines.
 
     Args:

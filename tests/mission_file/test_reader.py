@@ -9,9 +9,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mintpilot.core.errors import InputError, MissionError
-from mintpilot.mission import reader_yaml
-from mintpilot.mission.reader import MissionFileError, find_problems, read_mission
-from mintpilot.mission.reader_yaml import scalar
+from mintpilot.mission_file import yaml_places
+from mintpilot.mission_file.reader import MissionFileError, find_problems, read_mission
+from mintpilot.mission_file.yaml_places import scalar
 
 ROOT = Path(__file__).parents[2]
 MAP = "image: map.pgm\nresolution: 1.0\norigin: [0, 0, 0]\n"
@@ -327,7 +327,7 @@ def test_any_value_in_any_place_is_accepted_or_named_there(tmp_path_factory, mis
 
 
 def test_bounds_are_those_that_the_messages_state():
-    assert (reader_yaml.MAX_BYTES, reader_yaml.MAX_DEPTH, reader_yaml.MAX_VALUES) == (1_000_000, 20, 50_000)
+    assert (yaml_places.MAX_BYTES, yaml_places.MAX_DEPTH, yaml_places.MAX_VALUES) == (1_000_000, 20, 50_000)
 
 
 @pytest.mark.parametrize("line", ['name: "half \\ud800"', '"half \\udfff": 1'])

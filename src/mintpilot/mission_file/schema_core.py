@@ -10,9 +10,9 @@ from mintpilot.core.geometry import Box, Vec3
 from mintpilot.core.mission import AskingSettings, CriticalityRule, Mission, SurveySettings
 from mintpilot.core.plan import VehicleLimits
 from mintpilot.core.task import Action, Reference, SubGoal, Task
-from mintpilot.mission.schema import GoalSpec, MissionFile
-from mintpilot.mission.schema_base import attributes_of, place_of
-from mintpilot.mission.schema_world import MapWorld
+from mintpilot.mission_file.schema import GoalSpec, MissionFile
+from mintpilot.mission_file.schema_base import attributes_of, place_of
+from mintpilot.mission_file.schema_world import MapWorld
 
 
 def mission_of(file: MissionFile, *, start_m: Vec3, volume: Box) -> Mission:

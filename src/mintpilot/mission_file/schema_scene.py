@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from mintpilot.mission.schema_base import (
+from mintpilot.mission_file.schema_base import (
     Attributes,
     BoxSpec,
     Name,

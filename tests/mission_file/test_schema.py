@@ -13,10 +13,10 @@ from mintpilot.core.mission import AskingSettings, CriticalityRule, SurveySettin
 from mintpilot.core.observation import RegionKind
 from mintpilot.core.plan import VehicleLimits
 from mintpilot.core.task import Action
-from mintpilot.mission import schema, schema_scene, schema_world
-from mintpilot.mission.reader import json_schema, read_mission
-from mintpilot.mission.schema_core import asking_of, correlations_of, limits_of, mission_of, task_of, truths_of
-from mintpilot.mission.schema_map import map_of
+from mintpilot.mission_file import schema, schema_scene, schema_world
+from mintpilot.mission_file.reader import json_schema, read_mission
+from mintpilot.mission_file.schema_core import asking_of, correlations_of, limits_of, mission_of, task_of, truths_of
+from mintpilot.mission_file.schema_map import map_of
 from mintpilot.simulation import scene
 
 ROOT = Path(__file__).parents[2]

@@ -1,6 +1,7 @@
 """The mission file, version 1 (YAML). Its first key is ``mintpilot: 1``.
 
-The models check the form; `mintpilot.mission.reader` adds what only the whole file, and the map it names, can tell.
+The models check the form; `mintpilot.mission_file.reader` adds what only the whole file, and the map
+it names, can tell.
 """
 
 from __future__ import annotations
@@ -9,7 +10,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from mintpilot.mission.schema_base import (
+from mintpilot.mission_file.schema_base import (
     Attributes,
     Name,
     NotNegative,
@@ -20,7 +21,7 @@ from mintpilot.mission.schema_base import (
     Spec,
     Words,
 )
-from mintpilot.mission.schema_world import World
+from mintpilot.mission_file.schema_world import World
 
 SCHEMA_VERSION = 1
 

@@ -10,8 +10,8 @@ from typing import Any
 
 from pydantic_core import ErrorDetails
 
-from mintpilot.mission.reader_yaml import Path_, Value
-from mintpilot.mission.schema import MissionFile
+from mintpilot.mission_file.schema import MissionFile
+from mintpilot.mission_file.yaml_places import Path_, Value
 
 _KINDS = {
     "object": "a mapping (key: value)",

@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal, TypeAlias
 
 from pydantic import Discriminator, Field, Tag
 
-from mintpilot.mission.schema_base import (
+from mintpilot.mission_file.schema_base import (
     Attributes,
     BoxSpec,
     Name,
@@ -19,7 +19,7 @@ from mintpilot.mission.schema_base import (
     Spec,
     Words,
 )
-from mintpilot.mission.schema_scene import SceneSpec
+from mintpilot.mission_file.schema_scene import SceneSpec
 
 Passability: TypeAlias = Literal["passable", "blocked"]
 Occupancy: TypeAlias = Literal["present", "absent"]

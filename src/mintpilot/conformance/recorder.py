@@ -12,7 +12,7 @@ from mintpilot.core.events import Event, MissionEnded, Noticed, Timed
 from mintpilot.core.mission import Outcome, Verdict
 from mintpilot.core.ports import Recorder
 from mintpilot.mission.loop import fly_mission
-from mintpilot.mission.schema import OperatorSpec
+from mintpilot.mission_file.schema import OperatorSpec
 
 _HOSTILE = "<script>alert(1)</script>\x00\x1b[2J\r\n" + "long " * 5000 + "\ud800"
 

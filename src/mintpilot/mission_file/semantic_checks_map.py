@@ -7,13 +7,13 @@ from pathlib import Path
 
 from mintpilot.core.errors import MintPilotError
 from mintpilot.core.semantic_map import Cell, SemanticMap
-from mintpilot.mission.reader_form import show
-from mintpilot.mission.reader_sense_scene import box_fault, repeated_ids
-from mintpilot.mission.reader_yaml import Fault, Path_
-from mintpilot.mission.schema import MissionFile
-from mintpilot.mission.schema_base import place_of
-from mintpilot.mission.schema_map import ROS_SUFFIXES, is_flat, load_bare_map, regions_of
-from mintpilot.mission.schema_world import MapWorld, RegionSpec, RoomSpec
+from mintpilot.mission_file.form_checks import show
+from mintpilot.mission_file.schema import MissionFile
+from mintpilot.mission_file.schema_base import place_of
+from mintpilot.mission_file.schema_map import ROS_SUFFIXES, is_flat, load_bare_map, regions_of
+from mintpilot.mission_file.schema_world import MapWorld, RegionSpec, RoomSpec
+from mintpilot.mission_file.semantic_checks_scene import box_fault, repeated_ids
+from mintpilot.mission_file.yaml_places import Fault, Path_
 
 
 def map_faults(mission: MissionFile, world: MapWorld, base: Path) -> Iterator[Fault]:

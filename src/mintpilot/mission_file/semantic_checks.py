@@ -7,12 +7,12 @@ from collections import Counter
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
-from mintpilot.mission.reader_form import nearest, show
-from mintpilot.mission.reader_sense_map import map_faults
-from mintpilot.mission.reader_sense_scene import scene_faults
-from mintpilot.mission.reader_yaml import Fault, Path_
-from mintpilot.mission.schema import CorrelationSpec, GoalSpec, MissionFile
-from mintpilot.mission.schema_world import MapWorld, SceneWorld
+from mintpilot.mission_file.form_checks import nearest, show
+from mintpilot.mission_file.schema import CorrelationSpec, GoalSpec, MissionFile
+from mintpilot.mission_file.schema_world import MapWorld, SceneWorld
+from mintpilot.mission_file.semantic_checks_map import map_faults
+from mintpilot.mission_file.semantic_checks_scene import scene_faults
+from mintpilot.mission_file.yaml_places import Fault, Path_
 
 _VALUES = {"obstacle": ("passable", "blocked"), "presence": ("present", "absent")}
 

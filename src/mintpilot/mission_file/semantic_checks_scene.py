@@ -6,10 +6,10 @@ from collections.abc import Iterable, Iterator
 
 from mintpilot.core.errors import MapError
 from mintpilot.core.geometry import Box, Vec3
-from mintpilot.mission.reader_form import nearest, show
-from mintpilot.mission.reader_yaml import Fault, Path_
-from mintpilot.mission.schema_base import BoxSpec
-from mintpilot.mission.schema_scene import SceneSpec
+from mintpilot.mission_file.form_checks import nearest, show
+from mintpilot.mission_file.schema_base import BoxSpec
+from mintpilot.mission_file.schema_scene import SceneSpec
+from mintpilot.mission_file.yaml_places import Fault, Path_
 
 _ROOT: Path_ = ("world", "scene")
 
