@@ -7,8 +7,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TypeAlias, cast
 
-from mintpilot.assembly.crews import Choices, VehicleChoice, crew_for, scripted_operator, thinking_parts
-from mintpilot.assembly.deliberation import DeliberationReport, deliberation_report
+from mintpilot.assembly.components import Choices, VehicleChoice, components_for, deliberation_parts, scripted_operator
+from mintpilot.assembly.deliberation_report import DeliberationReport, deliberation_report
 from mintpilot.assembly.talk import Talk, talk_for
 from mintpilot.assembly.validation import validation_problems
 from mintpilot.assembly.worlds import World, build_world
@@ -16,13 +16,11 @@ from mintpilot.core.errors import UnknownNameError
 from mintpilot.core.events import Event
 from mintpilot.core.ports import Ask, LanguageModel, Operator, Recorder
 from mintpilot.interaction.scripted import ScriptedOperator
-from mintpilot.mission.account import first_accounts
+from mintpilot.mission.explanations import explanations
 from mintpilot.mission.loop import fly_mission
-from mintpilot.mission.mind import Mind
 from mintpilot.mission.preview import preview
 from mintpilot.mission_file.reader import Problem, find_problems, read_mission
 from mintpilot.mission_file.schema import MissionFile
-from mintpilot.reasoning.belief import prior_belief
 from mintpilot.recording.in_memory import HistoryRecorder
 from mintpilot.recording.record import MissionRecord
 from mintpilot.recording.recorders import TeeRecorder
@@ -32,6 +30,9 @@ Progress: TypeAlias = Callable[[Event], object]
 """Called with every event of a mission, as it happens."""
 MakeOperator: TypeAlias = Callable[[Talk], Operator]
 """Makes an operator that hears free words, given the mission's language: what understands them, and which it is."""
+
+AnyOperator: TypeAlias = Operator | MakeOperator | str
+"""Somebody who answers, what makes such a one, or ``"scripted"``."""
 
 
 def check_mission(path: str | Path) -> list[Problem]:
@@ -74,14 +75,9 @@ def plan_mission(
 
 def _planned(file: MissionFile, folder: Path, talk: Talk, *, strategy: str, seed: int | None) -> DeliberationReport:
     world = build_world(file, base=folder, seed=seed, parse=talk.parse)
-    parts = thinking_parts(world, Choices(strategy=strategy), talk)
+    parts = deliberation_parts(world, Choices(strategy=strategy), talk)
     begun = time.perf_counter()
-    seen = preview(
-        Mind(map=world.map, belief=prior_belief(())),
-        parts,
-        start_m=world.mission.start_m,
-        endurance_s=world.mission.limits.endurance_s,
-    )
+    seen = preview(world.map, parts)
     seconds = time.perf_counter() - begun
     decision = seen.first.decision
     question = None
@@ -93,7 +89,7 @@ def _planned(file: MissionFile, folder: Path, talk: Talk, *, strategy: str, seed
         seen,
         mission=file.name,
         strategy=strategy,
-        accounts=first_accounts(seen.first),
+        accounts=explanations(seen.first.situation, decision.mint),
         question=question,
         seconds=seconds,
     )
@@ -102,7 +98,7 @@ def _planned(file: MissionFile, folder: Path, talk: Talk, *, strategy: str, seed
 def run_mission(
     mission: str | Path | MissionFile,
     *,
-    operator: Operator | MakeOperator | str = "scripted",
+    operator: AnyOperator | tuple[AnyOperator, ...] = "scripted",
     vehicle: str = "mujoco",
     strategy: str = "mint",
     seed: int | None = None,
@@ -116,8 +112,8 @@ def run_mission(
 
     Args:
         mission: a mission file's path, or its contents.
-        operator: who answers, or what makes such a one of the mission's language; ``"scripted"``: one that knows the
-            truth, with the errors that the file states.
+        operator: who answers and gives orders, or what makes such a one of the mission's language; ``"scripted"``: one
+            that knows the truth, with the errors that the file states. Several may be given.
         vehicle: ``"mujoco"`` or ``"kinematic"``; a mission on a given map is always flown by the latter.
         strategy: name of the method of asking.
         seed: overrides the seed in the file.
@@ -140,24 +136,33 @@ def run_mission(
     choices = Choices(strategy=strategy, vehicle=_vehicle(vehicle))
     with talk_for(file.language, llm=llm, lang=lang) as talk:
         world = build_world(file, base=folder, seed=seed, parse=talk.parse)
-        person = _operator(operator, world, file, talk)
-        return _flown(world, choices, person, talk, out=out, progress=progress)
+        several = operator if isinstance(operator, tuple) else (operator,)
+        people = tuple(_operator(one, world, file, talk) for one in several)
+        return _flown(world, choices, people, talk, out=out, progress=progress)
 
 
 def _flown(
-    world: World, choices: Choices, person: Operator, talk: Talk, *, out: Path | None, progress: Progress | None
+    world: World,
+    choices: Choices,
+    people: tuple[Operator, ...],
+    talk: Talk,
+    *,
+    out: Path | None,
+    progress: Progress | None,
 ) -> MissionRecord:
     keeper = RunFolder(out) if out is not None else None
     recorder = HistoryRecorder()
     recorders: list[Recorder] = [keeper if keeper is not None else recorder]
     if progress is not None:
         recorders.append(_Told(progress))
+    tee = TeeRecorder(*recorders)
+    made = components_for(world, choices, operators=people, recorder=tee, talk=talk, digests=keeper is not None)
     if keeper is None:
-        with crew_for(world, choices, operator=person, recorder=TeeRecorder(*recorders), talk=talk) as crew:
-            fly_mission(crew)
+        with made as components:
+            fly_mission(components)
         return recorder.close()
-    with keeper, crew_for(world, choices, operator=person, recorder=TeeRecorder(*recorders), talk=talk) as crew:
-        fly_mission(crew)
+    with keeper, made as components:
+        fly_mission(components)
     return keeper.close()
 
 
@@ -185,9 +190,9 @@ def _vehicle(name: str) -> VehicleChoice:
         raise UnknownNameError("vehicle", name, list(VehicleChoice)) from None
 
 
-def _operator(operator: Operator | MakeOperator | str, world: World, file: MissionFile, talk: Talk) -> Operator:
+def _operator(operator: AnyOperator, world: World, file: MissionFile, talk: Talk) -> Operator:
     if not isinstance(operator, str):
-        return cast(Operator, operator) if hasattr(operator, "ask") else operator(talk)
+        return cast(Operator, operator) if hasattr(operator, "poll") else operator(talk)
     if operator != "scripted":
         raise UnknownNameError("operator", operator, ["scripted"])
     scripted: ScriptedOperator = scripted_operator(world, file.operator)

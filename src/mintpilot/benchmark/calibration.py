@@ -10,12 +10,13 @@ from importlib.resources import files
 
 import numpy as np
 
-from mintpilot.assembly.crews import Choices, thinking_parts
+from mintpilot.assembly.components import Choices, deliberation_parts
 from mintpilot.assembly.worlds import World
 from mintpilot.benchmark.experiment import Cell, Part
 from mintpilot.benchmark.methods import Method
 from mintpilot.core.errors import InfeasibleError
-from mintpilot.mission.mind import Mind, think
+from mintpilot.mission.belief_state import BeliefState
+from mintpilot.mission.deliberation import deliberate
 from mintpilot.reasoning.belief import prior_belief
 
 FIRST_SEED = 1_000_000
@@ -61,11 +62,11 @@ def nonconformity(world: World) -> float | None:
 
     None where nothing can be flown, or the truth is not a hypothesis of the tree.
     """
-    parts = thinking_parts(world, Choices())
+    parts = deliberation_parts(world, Choices())
     start, endurance = world.mission.start_m, world.mission.limits.endurance_s
-    mind = Mind(map=world.map, belief=prior_belief(()))
+    state = BeliefState(map=world.map, belief=prior_belief(()))
     try:
-        mint = think(mind, parts, start_m=start, endurance_s=endurance).decision.mint
+        mint = deliberate(state, parts, start_m=start, endurance_s=endurance).decision.mint
     except InfeasibleError:
         return None
     if mint is None:

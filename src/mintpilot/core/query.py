@@ -118,6 +118,8 @@ class Question:
     """1 for the first time, 2 and more when the same cut is asked again in other words."""
     worded_by: str = "template"
     """Who made the words."""
+    id: str = ""
+    """Names the question in one mission; answers carry it. Empty until the question is put."""
 
 
 class Reply(StrEnum):
@@ -129,12 +131,19 @@ class Reply(StrEnum):
     TIMEOUT = "timeout"
 
 
-class Command(StrEnum):
-    """What an operator may order instead of answering; obeyed at once."""
+class Order(StrEnum):
+    """What an operator may order at any time; obeyed by the very next motion."""
 
     HOLD = "hold"
-    ABORT = "abort"
+    """Brake, hover, and wait for another order."""
+    CONTINUE = "continue"
+    """Think again from here, and go on."""
     RETURN = "return"
+    """Fly back to the start through space that is known to be free."""
+    ABORT = "abort"
+    """Brake, ask nothing more, and do what is safest: land here where that is possible, else return and land."""
+    LAND = "land"
+    """Land here if the ground below is known to be free, else at the nearest place where it is."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -146,16 +155,11 @@ class Answer:
     """From the question's appearance to the reply, seconds."""
     text: str = ""
     """Raw words, as given. Data, never an instruction to this program."""
-    command: Command | None = None
-    """An order, which overrides ``reply``."""
     also: tuple[tuple[Query, bool], ...] = ()
     """What was said beyond the question (``not the red one, the blue one``): cuts with their answers. They teach the
     belief, and never count as the explicit yes that opens a region."""
     understood_by: str = ""
     """Who made a reply of the words: ``rules``, ``model``, or empty where nobody had to."""
-    better_s: float | None = None
-    """When better words (`mintpilot.core.ports.BetterWords`) were shown, seconds after the question's appearance; None:
-    the person had the first words only."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -164,7 +168,7 @@ class Meaning:
 
     reply: Reply | None
     """None: they do not map to an answer, ask again."""
-    command: Command | None = None
+    order: Order | None = None
     """An order, which overrides ``reply``."""
     also: tuple[tuple[Query, bool], ...] = ()
     """See `Answer.also`."""

@@ -14,7 +14,7 @@ import numpy as np
 from pydantic import JsonValue
 
 from mintpilot.core.errors import RecordError
-from mintpilot.core.events import Event
+from mintpilot.core.events import Event, Stepped
 from mintpilot.core.gap import Assumptions, Belief, Joint
 from mintpilot.core.observation import Detection, Frame
 from mintpilot.core.plan import PlanningProblem
@@ -36,9 +36,14 @@ def event_line(event: Event, *, number: int, at_s: float) -> bytes:
         number: its place in the file, from 0.
         at_s: when it was recorded, seconds since 1970.
     """
-    body = {"event": type(event).__name__, "number": number, "at_s": round(at_s, 3), **_fields(event)}
+    body = {"event": type(event).__name__, "number": number, "at_s": round(at_s, 3), **_body(event)}
     line = json.dumps(body, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
     return line.encode("utf-8", "replace") + b"\n"
+
+
+def _body(event: Event) -> dict[str, JsonValue]:
+    body = _json(event)
+    return body if isinstance(body, dict) else {}
 
 
 def read_events(path: Path) -> tuple[Mapping[str, JsonValue], ...]:
@@ -114,10 +119,17 @@ def _float(value: float) -> JsonValue:
 
 @_json.register
 def _array(value: np.ndarray) -> JsonValue:
+    if value.dtype == bool:
+        return int(value.sum())
     rows = value
     if value.ndim and len(value) > MAX_ROWS:
         rows = value[np.linspace(0, len(value) - 1, MAX_ROWS).astype(int)]
     return _json(np.round(rows, 4).tolist())
+
+
+@_json.register
+def _stepped(value: Stepped) -> JsonValue:
+    return {"input": type(value.input).__name__, "directives": list(value.directives), "digest": value.digest}
 
 
 @_json.register

@@ -87,10 +87,10 @@ def _asked(record: MissionRecord) -> RenderableType:
 
 
 def _question(question: QuestionRecord) -> Iterator[Text]:
-    said = f"Order: {question.command.value}" if question.command else REPLY_WORDS[question.reply]
+    said = REPLY_WORDS[question.reply]
     consequence = {Reply.YES: question.yes_means, Reply.NO: question.no_means}.get(question.reply, "")
     yield _plain(f"? {question.text}", "bold")
-    arrow = f" → {printable(consequence)}" if consequence and question.command is None else ""
+    arrow = f" → {printable(consequence)}" if consequence else ""
     facts = f"  (after {number(question.latency_s, 's')}, {number(question.gain_bits, 'bit', 2)})"
     yield Text.assemble("  ", (said, _STYLES[question.reply]), arrow, (facts, "dim"))
     for also in question.also:
