@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from mintpilot.benchmark.language_cases import QUESTIONS, AnswerCase, answer_cases
 from mintpilot.core.gap import ABSENT, BLOCKED, PASSABLE
-from mintpilot.core.query import Order, Literal, Query, Question, Reply, Saying, SayingKind
+from mintpilot.core.query import Literal, Order, Query, Question, Reply, Saying, SayingKind
 from mintpilot.language import Reading, understand_answer
 
 from . import questions

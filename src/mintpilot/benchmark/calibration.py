@@ -15,9 +15,7 @@ from mintpilot.assembly.worlds import World
 from mintpilot.benchmark.experiment import Cell, Part
 from mintpilot.benchmark.methods import Method
 from mintpilot.core.errors import InfeasibleError
-from mintpilot.mission.belief_state import BeliefState
-from mintpilot.mission.deliberation import deliberate
-from mintpilot.reasoning.belief import prior_belief
+from mintpilot.mission.rehearsal import begin
 
 FIRST_SEED = 1_000_000
 """Experiments count from small seeds; calibration worlds lie far off."""
@@ -63,10 +61,8 @@ def nonconformity(world: World) -> float | None:
     None where nothing can be flown, or the truth is not a hypothesis of the tree.
     """
     parts = deliberation_parts(world, Choices())
-    start, endurance = world.mission.start_m, world.mission.limits.endurance_s
-    state = BeliefState(map=world.map, belief=prior_belief(()))
     try:
-        mint = deliberate(state, parts, start_m=start, endurance_s=endurance).decision.mint
+        mint = begin(parts, world.map).deliberated().decision.mint
     except InfeasibleError:
         return None
     if mint is None:

@@ -15,9 +15,8 @@ from mintpilot.core.plan import Plan
 from mintpilot.core.ports import Ask, PlanSpace
 from mintpilot.core.tree import Node
 from mintpilot.elicitation.objectives.optimal import Optimal
-from mintpilot.mission.belief_state import BeliefState
-from mintpilot.mission.deliberation import Deliberation, DeliberationParts, deliberate
-from mintpilot.reasoning.belief import prior_belief
+from mintpilot.mission.deliberation import Deliberation, DeliberationParts
+from mintpilot.mission.rehearsal import begin
 
 PERSON_M = 0.3
 """Half the edge of a person's mark in pictures."""
@@ -98,8 +97,7 @@ def mattered(gap: KnowledgeGap, given: Assumptions, space: PlanSpace, settings: 
 
 
 def _thought(world: World, parts: DeliberationParts) -> Deliberation:
-    start, endurance = world.mission.start_m, world.mission.limits.endurance_s
-    return deliberate(BeliefState(map=world.map, belief=prior_belief(())), parts, start_m=start, endurance_s=endurance)
+    return begin(parts, world.map).deliberated()
 
 
 def _least_questions(world: World, parts: DeliberationParts) -> float | None:

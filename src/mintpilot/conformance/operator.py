@@ -54,7 +54,8 @@ def _check_question(operator: Operator, question: Question, time_s: float, patie
     """Shows it, shows it again in other words, polls through its patience, and withdraws it."""
     _timely(operator, "show", lambda: operator.show(question, patience_s))
     events = list(_poll(operator, time_s))
-    _timely(operator, "show", lambda: operator.show(replace(question, text=_HOSTILE), patience_s))
+    if not any(isinstance(event, Answered) for event in events):
+        _timely(operator, "show", lambda: operator.show(replace(question, text=_HOSTILE), patience_s))
     for share in (0.25, 0.5, 0.75, 1.0):
         events += _poll(operator, time_s + share * patience_s)
     answers = [e for e in events if isinstance(e, Answered)]

@@ -116,6 +116,7 @@ class TerminalOperator(Operator):
         if turn.question.id != question:
             self._turn = turn
             return
+        self._pending = self._pending[: self._pending.rfind(b"\n") + 1]  # half a word answers no later question
         self._console.print(Text(f"({_printable(why)})", style="yellow"))
 
     def tell(self, text: str) -> None:
