@@ -6,7 +6,6 @@ import dataclasses
 import io
 import json
 
-import numpy as np
 import pytest
 from rich.console import Console
 

@@ -27,7 +27,7 @@ _TYPES = {
 }
 
 
-def array_part() -> TypeCodec:
+def array_codec() -> TypeCodec:
     """Arrays of truth values, whole numbers and floats; read-only when decoded.
 
     ``{"float64": [[1.0, 2.0]]}`` or ``{"dtype", "shape", "data"}``; ``data`` is base64 of zlib of the little-endian

@@ -69,9 +69,9 @@ def shown(value: object) -> str:
     return text if len(text) <= 60 else text[:57] + "…"
 
 
-def text_part() -> TypeCodec:
+def text_codec() -> TypeCodec:
     """Strings. Those that are no Unicode text (lone surrogates) are written as ``{"surrogates": base64}``."""
-    return TypeCodec(encode=encode_text, decode=lambda document, _: _decode_text(document))
+    return TypeCodec(encode=encode_text, decode=lambda document, _: decode_text(document))
 
 
 def encode_text(value: object) -> JsonValue:
@@ -87,7 +87,8 @@ def encode_text(value: object) -> JsonValue:
     return value
 
 
-def _decode_text(document: JsonValue) -> str:
+def decode_text(document: JsonValue) -> str:
+    """The string that stands in a document so."""
     if isinstance(document, str):
         return document
     held = document.get("surrogates") if isinstance(document, dict) and len(document) == 1 else None
@@ -99,7 +100,7 @@ def _decode_text(document: JsonValue) -> str:
         raise CodecError(f"{shown(held)}: base64 of UTF-8 with surrogates is expected") from None
 
 
-def bool_part() -> TypeCodec:
+def bool_codec() -> TypeCodec:
     """Truth values."""
 
     def encode(value: object) -> JsonValue:
@@ -110,7 +111,7 @@ def bool_part() -> TypeCodec:
     return TypeCodec(encode=encode, decode=lambda document, _: encode(document))
 
 
-def int_part() -> TypeCodec:
+def int_codec() -> TypeCodec:
     """Whole numbers of any size; numpy's become Python's."""
 
     def encode(value: object) -> JsonValue:
@@ -123,7 +124,7 @@ def int_part() -> TypeCodec:
     return TypeCodec(encode=encode, decode=lambda document, _: encode(document))
 
 
-def float_part() -> TypeCodec:
+def float_codec() -> TypeCodec:
     """Numbers, exactly; numpy's become Python's. Whole numbers stay whole; ``"inf"``, ``"-inf"`` and ``"nan"``."""
     return TypeCodec(encode=_encode_float, decode=lambda document, _: _decode_float(document))
 
@@ -167,7 +168,7 @@ def _decode_float(document: JsonValue) -> float:
     raise CodecError(f'{shown(document)}: a number is expected, or "inf", "-inf", "nan"')
 
 
-def none_part() -> TypeCodec:
+def none_codec() -> TypeCodec:
     """Nothing but None."""
 
     def encode(value: object) -> JsonValue:
@@ -178,7 +179,7 @@ def none_part() -> TypeCodec:
     return TypeCodec(encode=encode, decode=lambda document, _: encode(document))
 
 
-def enum_part(cls: type[Enum]) -> TypeCodec:
+def enum_codec(cls: type[Enum]) -> TypeCodec:
     """Members of an enumeration: by value where all values are text, else by name."""
     members = tuple(cls)
     by_value = all(isinstance(member.value, str) for member in members)
@@ -198,7 +199,7 @@ def enum_part(cls: type[Enum]) -> TypeCodec:
     return TypeCodec(encode=encode, decode=decode)
 
 
-def literal_part(choices: tuple[object, ...]) -> TypeCodec:
+def literal_codec(choices: tuple[object, ...]) -> TypeCodec:
     """One of a few constants: text, whole numbers, truth values."""
 
     def check(value: object) -> JsonValue:

@@ -278,7 +278,7 @@ class _Codecs:
     def __init__(self) -> None:
         self._maps, self._plans = MapDeltas(), SharedPlans()
         picture = TypeCodec(encode=_encode_picture, decode=_decode_picture)
-        self.codec = Codec({SemanticMap: self._maps.part(), Plan: self._plans.part(), Frame: picture})
+        self.codec = Codec({SemanticMap: self._maps.type_codec(), Plan: self._plans.type_codec(), Frame: picture})
 
     def begin(self) -> None:
         self._plans.begin()
@@ -304,11 +304,11 @@ def _encode_picture(value: object) -> JsonValue:
     if not isinstance(value, Frame):
         raise CodecError(f"{shown(value)}: Frame is expected")
     view = _View(time_s=value.time_s, camera=value.camera, world_from_camera=value.world_from_camera)
-    return _VIEWS.part(_View).encode(view)
+    return _VIEWS.type_codec(_View).encode(view)
 
 
 def _decode_picture(document: JsonValue, budget: Budget) -> Frame:
-    view = _VIEWS.part(_View).decode(document, budget)
+    view = _VIEWS.type_codec(_View).decode(document, budget)
     assert isinstance(view, _View)
     size = (view.camera.height, view.camera.width)
     try:

@@ -38,7 +38,7 @@ class MapDeltas:
         self._before: SemanticMap | None = None
         self._digest = ""
 
-    def part(self) -> TypeCodec:
+    def type_codec(self) -> TypeCodec:
         """For `mintpilot.recording.codec.Codec`."""
         return TypeCodec(encode=self._encode, decode=self._decode)
 
@@ -54,14 +54,14 @@ class MapDeltas:
             return {"delta": {}, "digest": self._digest}
         self._before, self._digest = value, map_digest(value)
         if before is None or not _comparable(before, value):
-            return {"whole": _PLAIN.part(SemanticMap).encode(value), "digest": self._digest}
+            return {"whole": _PLAIN.type_codec(SemanticMap).encode(value), "digest": self._digest}
         return {"delta": _delta(before, value), "digest": self._digest}
 
     def _decode(self, document: JsonValue, budget: Budget) -> SemanticMap:
         if not isinstance(document, dict) or document.keys() not in ({"whole", "digest"}, {"delta", "digest"}):
             raise CodecError("a map has a digest and stands under 'whole' or 'delta'")
         if "whole" in document:
-            value = _PLAIN.part(SemanticMap).decode(document["whole"], budget)
+            value = _PLAIN.type_codec(SemanticMap).decode(document["whole"], budget)
         elif self._before is None:
             raise CodecError("a map is told by its difference to one that is not in the record")
         else:
@@ -117,7 +117,7 @@ def _delta(before: SemanticMap, after: SemanticMap) -> Fields:
 
 
 def _others(value: SemanticMap) -> Fields:
-    return {name: _PLAIN.part(_hints()[name]).encode(getattr(value, name)) for name in _OTHERS}
+    return {name: _PLAIN.type_codec(_hints()[name]).encode(getattr(value, name)) for name in _OTHERS}
 
 
 @functools.cache
@@ -139,7 +139,7 @@ def _applied(before: SemanticMap, document: JsonValue, budget: Budget) -> Semant
             elif name in _KINDS:
                 changed[name] = applied(_KINDS[name], getattr(before, name), item, budget)
             else:
-                changed[name] = _PLAIN.part(_hints()[name]).decode(item, budget)
+                changed[name] = _PLAIN.type_codec(_hints()[name]).decode(item, budget)
         except CodecError as fault:
             raise fault.under(name).under("delta") from None
     try:

@@ -19,7 +19,7 @@ from mintpilot.core.geometry import GridFrame, Ints
 from mintpilot.core.semantic_map import MapObject, Region, Room
 from mintpilot.recording.codec import Codec
 from mintpilot.recording.codec_arrays import decode_array, encode_array
-from mintpilot.recording.codec_parts import Budget, CodecError, shown
+from mintpilot.recording.codec_parts import Budget, CodecError, decode_text, encode_text, shown
 
 Thing: TypeAlias = MapObject | Region | Room
 Fields: TypeAlias = dict[str, JsonValue]
@@ -30,7 +30,7 @@ _PLAIN = Codec()
 def fields_of(thing: GridFrame | Thing) -> Fields:
     """All fields of a thing in the map; for a region without its cells."""
     plain = dataclasses.replace(thing, cells=_NO_CELLS) if isinstance(thing, Region) else thing
-    document = _PLAIN.part(type(thing)).encode(plain)
+    document = _PLAIN.type_codec(type(thing)).encode(plain)
     assert isinstance(document, dict)
     document.pop("cells", None)
     return document
@@ -50,15 +50,15 @@ def difference(before: Sequence[Thing], after: Sequence[Thing]) -> Fields:
         known = old.get(thing.id)
         if thing is not known and (fields := _changes(known, thing)):
             changed.append(fields)
-    gone: list[JsonValue] = [name for name in old if name not in set(names)]
+    gone = [name for name in old if name not in set(names)]
     natural = [name for name in old if name not in gone] + [name for name in names if name not in old]
     document: Fields = {}
     if changed:
         document["set"] = changed
     if gone:
-        document["removed"] = gone
+        document["removed"] = [encode_text(name) for name in gone]
     if names != natural:
-        document["order"] = [*names]
+        document["order"] = [encode_text(name) for name in names]
     return document
 
 
@@ -74,15 +74,15 @@ def applied(kind: type[Thing], before: Sequence[Thing], document: JsonValue, bud
     if not isinstance(document, dict) or not document.keys() <= {"set", "removed", "order"}:
         raise CodecError("what became of things is told by 'set', 'removed' and 'order'")
     things = {thing.id: thing for thing in before}
-    for name in _listed(document.get("removed")):
-        if not isinstance(name, str) or things.pop(name, None) is None:
+    for name in _names(document.get("removed")):
+        if things.pop(name, None) is None:
             raise CodecError(f"{shown(name)} was removed, but was not there")
     for fields in _listed(document.get("set")):
         thing = _changed(kind, things, fields, budget)
         things[thing.id] = thing
     if "order" not in document:
         return tuple(things.values())
-    names = [name for name in _listed(document["order"]) if isinstance(name, str)]
+    names = _names(document["order"])
     if sorted(names) != sorted(things):
         raise CodecError("the order names everything once")
     return tuple(things[name] for name in names)
@@ -119,16 +119,15 @@ def _ascending(cells: Ints) -> bool:
 
 
 def _changed(kind: type[Thing], things: Mapping[str, Thing], document: JsonValue, budget: Budget) -> Thing:
-    name = document.get("id") if isinstance(document, dict) else None
-    if not isinstance(document, dict) or not isinstance(name, str):
+    if not isinstance(document, dict) or "id" not in document:
         raise CodecError("a thing in the map has an id")
-    old = things.get(name)
+    old = things.get(decode_text(document["id"]))
     fields: Fields = {**({} if old is None else fields_of(old)), **document}
     cells = _NO_CELLS
     if kind is Region:
         cells = _cells_after(old.cells if isinstance(old, Region) else _NO_CELLS, fields, budget)
         fields["cells"] = encode_array(_NO_CELLS)
-    thing = _PLAIN.part(kind).decode(fields, budget)
+    thing = _PLAIN.type_codec(kind).decode(fields, budget)
     if isinstance(thing, Region):
         return dataclasses.replace(thing, cells=cells)
     assert isinstance(thing, MapObject | Room)
@@ -157,6 +156,10 @@ def indices(document: JsonValue, budget: Budget) -> Ints:
     if not isinstance(cells, np.ndarray) or cells.dtype != np.int64 or cells.ndim != 1:
         raise CodecError("cells are told by whole numbers (int64) in a row")
     return cells  # type: ignore[return-value]  # checked above
+
+
+def _names(document: JsonValue) -> list[str]:
+    return [decode_text(name) for name in _listed(document)]
 
 
 def _listed(document: JsonValue) -> list[JsonValue]:

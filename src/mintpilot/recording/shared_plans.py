@@ -23,7 +23,7 @@ class SharedPlans:
         self._lately: dict[int, tuple[Plan, int]] = {}
         self._plans: dict[int, Plan] = {}
 
-    def part(self) -> TypeCodec:
+    def type_codec(self) -> TypeCodec:
         """For `mintpilot.recording.codec.Codec`."""
         return TypeCodec(encode=self._encode, decode=self._decode)
 
@@ -42,7 +42,7 @@ class SharedPlans:
         held = self._lately.get(id(value))
         if held is not None:
             return {"same": held[1]}
-        document = _PLAIN.part(Plan).encode(value)
+        document = _PLAIN.type_codec(Plan).encode(value)
         key = hashlib.blake2b(json.dumps(document).encode(), digest_size=16).digest()
         number = self._numbers.get(key)
         known = number is not None
@@ -55,7 +55,7 @@ class SharedPlans:
     def _decode(self, document: JsonValue, budget: Budget) -> Plan:
         if isinstance(document, dict) and document.keys() == {"number", "plan"}:
             number = document["number"]
-            plan = _PLAIN.part(Plan).decode(document["plan"], budget)
+            plan = _PLAIN.type_codec(Plan).decode(document["plan"], budget)
             if type(number) is not int or number in self._plans or not isinstance(plan, Plan):
                 raise CodecError(f"{shown(number)}: the number of a new plan is a whole number that no other has")
             self._plans[number] = plan
