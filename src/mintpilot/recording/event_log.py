@@ -15,28 +15,20 @@ import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import IO, cast
+from typing import IO
 
-import numpy as np
 from pydantic import JsonValue
 
 from mintpilot.core.errors import MintPilotError, RecordError
 from mintpilot.core.events import Event
-from mintpilot.core.geometry import Floats
-from mintpilot.core.observation import CameraModel, Frame
-from mintpilot.core.plan import Plan
-from mintpilot.core.semantic_map import SemanticMap
-from mintpilot.recording.codec import Codec
-from mintpilot.recording.codec_parts import Budget, CodecError, TypeCodec, shown
+from mintpilot.recording.codec_parts import shown
+from mintpilot.recording.event_codec import EventCodec
 from mintpilot.recording.event_lines import MAX_LINE_BYTES, opened, plain_json, sealed
-from mintpilot.recording.map_deltas import MapDeltas
-from mintpilot.recording.shared_plans import SharedPlans
 
 EVENTS_FILE = "events.ndjson"
 EVENTS_SCHEMA_VERSION = 2
 """Of the log; raised when a field is added without a default, renamed or removed. Version 1 was lossy."""
 _FORMAT = "mintpilot-events"
-_EVENT = cast(type[Event], Event)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -64,7 +56,7 @@ class EventLogWriter:
 
     def __init__(self, path: Path, *, program: str = "", clock: Callable[[], float] = time.time) -> None:
         self._clock = clock
-        self._codecs = _Codecs()
+        self._codec = EventCodec()
         self._number = 0
         self._end = (0, b"")
         header: dict[str, JsonValue] = {
@@ -88,11 +80,9 @@ class EventLogWriter:
         """
         self._number += 1
         try:
-            self._codecs.begin()
-            body = self._codecs.codec.encode(event, Event)
-            self._write({"number": self._number, "at_s": self._clock(), "event": body})
+            self._write({"number": self._number, "at_s": self._clock(), "event": self._codec.encode(event)})
         except BaseException:  # Ctrl-C as well: the next event must not build on one that is not there
-            self._codecs.forget()
+            self._codec.forget()
             raise
 
     def close(self) -> None:
@@ -151,11 +141,11 @@ class EventLog:
             header = lines.header()
         self.program = str(header.get("program", ""))
         begun = header.get("at_s")
-        self.begun_s = float(begun) if isinstance(begun, int | float) else 0.0
+        self.begun_s = begun if isinstance(begun, int | float) else 0.0
 
     def __iter__(self) -> Iterator[LoggedEvent]:
         self.cut, self.lost = "", 0
-        codecs, expected = _Codecs(), 1
+        codec, expected = EventCodec(), 1
         with _Lines(self.path) as lines:
             lines.header()
             while (fields := lines.next(expected)) is not None:
@@ -164,14 +154,14 @@ class EventLog:
                     self.lost += count - expected + 1 if type(count) is int else 0
                     lines.finish()
                     return
-                logged = _logged(fields, codecs, expected, lines.place)
+                logged = _logged(fields, codec, expected, lines.place)
                 self.lost += logged.number - expected
                 expected = logged.number + 1
                 yield logged
             self.cut = lines.cut
 
 
-def _logged(fields: dict[str, JsonValue], codecs: _Codecs, expected: int, place: str) -> LoggedEvent:
+def _logged(fields: dict[str, JsonValue], codec: EventCodec, expected: int, place: str) -> LoggedEvent:
     number, at_s = fields.get("number"), fields.get("at_s")
     if fields.keys() != {"number", "at_s", "event"} or type(number) is not int or not isinstance(at_s, int | float):
         raise RecordError(
@@ -180,7 +170,7 @@ def _logged(fields: dict[str, JsonValue], codecs: _Codecs, expected: int, place:
     if number < expected:
         raise RecordError(f"{place}: event {number} stands after event {expected - 1}; numbers ascend")
     try:
-        return LoggedEvent(number=number, at_s=at_s, event=codecs.codec.decode(_EVENT, fields["event"]))
+        return LoggedEvent(number=number, at_s=at_s, event=codec.decode(fields["event"]))
     except MintPilotError as error:
         raise RecordError(f"{place} (event {number}): {error}") from error
 
@@ -270,54 +260,3 @@ def _damage(line: bytes, expected: int) -> str:
     if type(number) is int and number != expected:
         return f"holds event {number} where event {expected} was written: lines were removed, moved or put in"
     return "was changed after it was written, or the line before it was removed"
-
-
-class _Codecs:
-    """The codec of one writer or one reader, with what it remembers of earlier lines."""
-
-    def __init__(self) -> None:
-        self._maps, self._plans = MapDeltas(), SharedPlans()
-        picture = TypeCodec(encode=_encode_picture, decode=_decode_picture)
-        self.codec = Codec({SemanticMap: self._maps.type_codec(), Plan: self._plans.type_codec(), Frame: picture})
-
-    def begin(self) -> None:
-        self._plans.begin()
-
-    def forget(self) -> None:
-        self._maps.forget()
-        self._plans.forget()
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class _View:
-    """What the log keeps of a picture."""
-
-    time_s: float
-    camera: CameraModel
-    world_from_camera: Floats
-
-
-_VIEWS = Codec()
-
-
-def _encode_picture(value: object) -> JsonValue:
-    if not isinstance(value, Frame):
-        raise CodecError(f"{shown(value)}: Frame is expected")
-    view = _View(time_s=value.time_s, camera=value.camera, world_from_camera=value.world_from_camera)
-    return _VIEWS.type_codec(_View).encode(view)
-
-
-def _decode_picture(document: JsonValue, budget: Budget) -> Frame:
-    view = _VIEWS.type_codec(_View).decode(document, budget)
-    assert isinstance(view, _View)
-    size = (view.camera.height, view.camera.width)
-    try:
-        return Frame(
-            time_s=view.time_s,
-            rgb=np.broadcast_to(np.uint8(0), (*size, 3)),
-            depth_m=np.broadcast_to(np.float32(np.nan), size),
-            camera=view.camera,
-            world_from_camera=view.world_from_camera,
-        )
-    except Exception as error:  # whatever the noun's own checks raise
-        raise CodecError(f"Frame refuses it: {error}") from None
