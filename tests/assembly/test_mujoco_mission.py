@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from mintpilot.assembly.api import run_mission
+from mintpilot.assembly.replaying import verify_run
 from mintpilot.cli.demos import demo_mission
 from mintpilot.core.mission import Outcome
 from mintpilot.recording.record import read_record
@@ -54,3 +55,12 @@ def test_the_run_folder_tells_it_all(flown):
     report = (out / "report.html").read_text(encoding="utf-8")
     assert record.questions[0].text in report
     assert "data:image/jpeg;base64," in report  # the pictures are inside: one file to hand on
+
+
+def test_it_is_thought_through_again_and_equal(flown):
+    done = verify_run(flown[1])
+    assert done.verification.difference is None
+    assert done.verification.steps > 100
+    seconds = flown[0].flight.seconds + flown[0].survey.seconds
+    size = (flown[1] / "events.ndjson").stat().st_size
+    assert size / seconds * 60 < 2_000_000, "bytes a minute of flight"

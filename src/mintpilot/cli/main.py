@@ -230,6 +230,34 @@ def doctor(*, json: Json = False, debug: Flag = False) -> ExitCode:
     return guarded(lambda: examine(as_json=json), as_json=json, debug=debug)
 
 
+@app.command(
+    help_epilogue=examples(
+        "mintpilot replay runs/2026-11-28T10-00-00-fire-warehouse",
+        "mintpilot replay runs/2026-11-28T10-00-00-fire-warehouse --verify",
+    )
+)
+def replay(
+    run: Path,
+    /,
+    *,
+    verify: Flag = False,
+    json: Json = False,
+    debug: Flag = False,
+) -> ExitCode:
+    """Show a recorded mission again, or think it through again and compare.
+
+    Args:
+        run: The run folder.
+        verify: Feed the recorded events to the mission again: every step must be equal bit for bit, every deliberation
+            within 1e-9. The first difference is shown with the event before it.
+        json: Print one JSON object, and nothing else, on standard output.
+        debug: Show the traceback of an error.
+    """
+    from mintpilot.cli.replaying import replay_run
+
+    return guarded(lambda: replay_run(run, verify=verify, as_json=json), as_json=json, debug=debug)
+
+
 app.command(bench)
 
 

@@ -33,7 +33,8 @@ def permissions(state: BeliefState, settings: AskingSettings) -> Permissions:
     leave_out = {room_gap_id(r.id) for r in state.map.rooms if r.occupied is Knowledge.NO}
     pick: set[tuple[str, str]] = set()
     for gap in belief.gaps:
-        if gap.kind is GapKind.PRESENCE and belief.probability_of(gap.id, ABSENT) >= 1 - settings.alpha:
+        may_be_absent = gap.kind is GapKind.PRESENCE and ABSENT in gap.values
+        if may_be_absent and belief.probability_of(gap.id, ABSENT) >= 1 - settings.alpha:
             leave_out.add(gap.id)
         if gap.kind is GapKind.TARGET and len(gap.values) > 1:
             p = belief.marginal(gap.id)

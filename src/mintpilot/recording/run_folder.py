@@ -28,6 +28,7 @@ from mintpilot.core.events import (
     Event,
     FrameSeen,
     LegFlown,
+    MapUpdated,
     MissionEnded,
     MissionStarted,
     PlanChosen,
@@ -41,6 +42,8 @@ from mintpilot.recording.products import write_products
 from mintpilot.recording.record import MissionRecord, NoticeRecord
 
 _DECISIONS = (MissionStarted, Deliberated, Asked, PlanChosen, LegFlown, MissionEnded)
+_DERIVED = (MapUpdated, Deliberated, PlanChosen, LegFlown)
+"""What follows from the steps, and is large: it is not written a second time."""
 _RUNNING = "The mission was still running when this was written."
 _CUT_SHORT = "The mission was ended before it was finished."
 
@@ -87,7 +90,8 @@ class RunFolder(Recorder):
     def record(self, event: Event) -> None:
         """Writes the event through at once. What cannot be written is noted, and the mission goes on."""
         self._history.add(event)
-        self._guard("an event", lambda: self._events.append(event))
+        if not isinstance(event, _DERIVED):
+            self._guard("an event", lambda: self._events.append(event))
         if isinstance(event, FrameSeen):
             self._guard("a picture", lambda: self._frames.add(event.index, event.frame))
         elif isinstance(event, _DECISIONS):

@@ -1,0 +1,368 @@
+"""The laws of a mission as a state machine: hostile and random event orders against the shipped `step`.
+
+What is checked is checked from outside: by the directives alone, with a judge of flights that shares no code with
+planning.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+from hypothesis import HealthCheck, Phase, note, settings
+from hypothesis import strategies as st
+from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, precondition, rule
+
+from mintpilot.assembly.components import Choices, deliberation_parts
+from mintpilot.conformance.sample import sample_world
+from mintpilot.core.digest import digest
+from mintpilot.core.inputs import (
+    Answered,
+    DeliberationEnded,
+    Input,
+    Link,
+    LinkChanged,
+    MapObserved,
+    MissionBegun,
+    MotionEnded,
+    Ordered,
+    QuestionReworded,
+    QuestionShown,
+    Ticked,
+)
+from mintpilot.core.mission import Outcome
+from mintpilot.core.motion import FollowTrajectory, Land, Motion, MotionEnd
+from mintpilot.core.observation import RegionKind
+from mintpilot.core.query import Answer, Order, Reply
+from mintpilot.core.semantic_map import Cell, Knowledge, Region, SemanticMap
+from mintpilot.core.trajectory import FlightEnd, FlightLog, VehicleState
+from mintpilot.mission.directives import (
+    Brake,
+    Deliberate,
+    Directive,
+    Finish,
+    Move,
+    Observe,
+    ShowQuestion,
+    WithdrawQuestion,
+)
+from mintpilot.mission.requests import Request
+from mintpilot.mission.state import MissionState, Setup
+from mintpilot.mission.step import initial_state, step
+from mintpilot.mission.worker import worked_out
+
+BATTERY_S = 300.0
+OUTCOMES: Counter[Outcome] = Counter()
+
+
+@cache
+def parts():
+    world = sample_world()
+    limits = replace(world.mission.limits, endurance_s=BATTERY_S)
+    changed = replace(world, mission=replace(world.mission, limits=limits, survey=None))
+    return deliberation_parts(changed, Choices())
+
+
+DECIDED: dict[str, DeliberationEnded] = {}
+
+
+def decided(request: Request) -> DeliberationEnded:
+    """Equal requests give equal decisions: they are worked out once for all examples."""
+    key = digest(replace(request, id=0))
+    if key not in DECIDED:
+        DECIDED[key] = worked_out(parts(), request, 0.0)
+    return DECIDED[key]
+
+
+class Mission(RuleBasedStateMachine):
+    """One mission, with everything around it played by the rules below."""
+
+    @initialize(calm=st.booleans())
+    def begin(self, calm: bool) -> None:
+        """A calm mission meets no orders, clouds, refusals and lost links: it gets far."""
+        world = sample_world()
+        self.calm = calm
+        self.map: SemanticMap = world.map
+        self.time_s, self.position = 0.0, world.mission.start_m
+        self.state: MissionState = initial_state(Setup(mission=parts().mission), self.vehicle())
+        self.moving: Motion | None = None
+        self.braking = False
+        self.looks = 0
+        self.requests: list[Request] = []
+        self.open: list[str] = []
+        self.asked: list[str] = []
+        self.ended = False
+        self.holds = False
+        self.clouds = 0
+        self.feed(MissionBegun(time_s=0.0, vehicle=self.vehicle()))
+
+    def vehicle(self) -> VehicleState:
+        return VehicleState(
+            time_s=self.time_s,
+            position_m=self.position,
+            velocity_mps=(0.0, 0.0, 0.0),
+            yaw_rad=0.0,
+            endurance_left_s=max(BATTERY_S - self.time_s, 0.0),
+        )
+
+    def feed(self, event: Input) -> None:
+        """One step: the same twice, and its directives looked at from outside."""
+        before = self.state
+        self.state, directives = step(before, event)
+        again, same = step(before, event)
+        assert digest(directives) == digest(same), "equal events give equal directives"
+        assert digest(again) == digest(self.state)
+        assert self.state.clock_s >= before.clock_s
+        if self.ended:
+            assert directives == (), "after the end there is nothing to do"
+        for directive in directives:
+            self.carry_out(directive)
+
+    def carry_out(self, directive: Directive) -> None:
+        match directive:
+            case Move():
+                assert self.moving is None, "a motion replaces another one only at rest"
+                assert not self.holds or isinstance(directive.motion, Land), "who holds does not move"
+                self.moving, self.braking = directive.motion, False
+                if isinstance(directive.motion, FollowTrajectory):
+                    self.judge(directive)
+            case Brake():
+                self.braking = True
+            case Observe():
+                self.looks += 1
+            case Deliberate():
+                self.requests.append(directive.request)
+            case ShowQuestion():
+                name = directive.question.id
+                assert not self.open or self.open == [name], "at most one question is open"
+                if name not in self.open:
+                    assert name not in self.asked, "ids are given once"
+                    self.open, self.asked = [name], [*self.asked, name]
+            case WithdrawQuestion():
+                self.open = [name for name in self.open if name != directive.question]
+            case Finish():
+                assert not self.ended
+                self.ended = True
+
+    def judge(self, move: Move) -> None:
+        """Every place that is flown lies in a cell that was seen free, outside every region not known passable."""
+        motion = move.motion
+        assert isinstance(motion, FollowTrajectory)
+        assert self.state.beliefs is not None
+        known = self.state.beliefs.map
+        open_ = np.zeros(known.cells.size, bool)
+        for region in known.regions:
+            if region.passable is not Knowledge.YES:
+                open_[region.cells] = True
+        for x, y, z in motion.trajectory.position_m[::3]:
+            origin, edge = known.frame.origin_m, known.frame.resolution_m
+            cell = tuple(int((p - o) // edge) for p, o in zip((z, y, x), origin[::-1], strict=True))
+            flat = np.ravel_multi_index(cell, known.cells.shape)
+            assert known.cells[cell] == Cell.FREE, f"{cell} was not seen free"
+            assert not open_[flat], f"{cell} lies in a region that is not known to be passable"
+
+    # --- what may happen ------------------------------------------------------------------------------------------
+
+    @rule(seconds=st.floats(0.0, 20.0))
+    def time_passes(self, seconds: float) -> None:
+        self.time_s += seconds
+        self.feed(Ticked(time_s=self.time_s, vehicle=self.vehicle()))
+
+    @precondition(lambda self: self.moving is not None)
+    @rule(end=st.sampled_from([MotionEnd.ARRIVED, MotionEnd.ARRIVED, MotionEnd.STOPPED]), share=st.floats(0.1, 0.9))
+    def motion_ends(self, end: MotionEnd, share: float) -> None:
+        self.finish_motion(end, share)
+
+    def finish_motion(self, end: MotionEnd, share: float = 0.5) -> None:
+        motion, log = self.moving, None
+        assert motion is not None
+        end = MotionEnd.STOPPED if self.braking else end
+        if isinstance(motion, FollowTrajectory):
+            way = motion.trajectory
+            rows = len(way.time_s) if end is MotionEnd.ARRIVED else max(1, int(share * len(way.time_s)))
+            flown = way.position_m[:rows]
+            x, y, z = (float(v) for v in flown[-1])
+            times = self.time_s + way.time_s[:rows]
+            self.time_s, self.position = float(times[-1]), (x, y, z)
+            ends = FlightEnd.ARRIVED if end is MotionEnd.ARRIVED else FlightEnd.INTERRUPTED
+            log = FlightLog(end=ends, time_s=times, position_m=flown.copy(), reference_m=flown.copy())
+        self.moving, self.braking = None, False
+        vehicle = self.vehicle()
+        self.feed(MotionEnded(time_s=self.time_s, motion=motion.id, end=end, vehicle=vehicle, log=log))
+
+    @precondition(lambda self: self.moving is not None and not self.calm)
+    @rule()
+    def a_motion_is_refused(self) -> None:
+        motion, self.moving, self.braking = self.moving, None, False
+        assert motion is not None
+        refused = MotionEnd.REFUSED
+        self.feed(MotionEnded(time_s=self.time_s, motion=motion.id, end=refused, vehicle=self.vehicle(), reason="no"))
+
+    @rule(number=st.integers(0, 400))
+    def some_other_motion_ends(self, number: int) -> None:
+        if self.moving is None or number != self.moving.id:
+            self.feed(MotionEnded(time_s=self.time_s, motion=number, end=MotionEnd.ARRIVED, vehicle=self.vehicle()))
+
+    @precondition(lambda self: self.looks > 0)
+    @rule()
+    def a_look_comes_back(self) -> None:
+        self.looks -= 1
+        self.feed(MapObserved(time_s=self.time_s, map=self.believed()))
+
+    def believed(self) -> SemanticMap:
+        """The map with what was answered carried over, as map sources do."""
+        if self.state.beliefs is None:
+            return self.map
+        known = {region.id: region.passable for region in self.state.beliefs.map.regions}
+        rooms = {room.id: room for room in self.state.beliefs.map.rooms}
+        return replace(
+            self.map,
+            regions=tuple(replace(r, passable=known.get(r.id, r.passable)) for r in self.map.regions),
+            rooms=tuple(rooms.get(r.id, r) for r in self.map.rooms),
+        )
+
+    @precondition(lambda self: self.state.beliefs is not None and self.clouds < 3 and not self.calm)
+    @rule(data=st.data())
+    def a_cloud_appears(self, data: st.DataObject) -> None:
+        frame = self.map.frame
+        centre = data.draw(st.integers(0, frame.size - 1))
+        zyx = np.argwhere(self.map.cells == Cell.FREE)
+        near = np.linalg.norm(zyx - np.unravel_index(centre, frame.shape), axis=1) <= 3
+        cells = np.sort(np.ravel_multi_index(tuple(zyx[near].T), frame.shape))
+        if cells.size:
+            self.clouds += 1
+            cloud = Region(id=f"new-{self.clouds}", kind=RegionKind.SMOKE, cells=cells)
+            self.map = replace(self.map, regions=(*self.map.regions, cloud))
+            obstruction = data.draw(st.sampled_from(["", "a cloud"]))
+            self.feed(MapObserved(time_s=self.time_s, map=self.believed(), obstruction=obstruction))
+
+    @precondition(lambda self: bool(self.requests))
+    @rule(data=st.data())
+    def a_deliberation_comes_back(self, data: st.DataObject) -> None:
+        """In any order, also those that were dropped, early or late."""
+        index = data.draw(st.integers(0, len(self.requests) - 1))
+        self.deliver(self.requests.pop(index))
+
+    def deliver(self, request: Request) -> None:
+        done = decided(request)
+        self.feed(replace(done, time_s=self.time_s, request=request.id))
+
+    @precondition(lambda self: bool(self.requests) and not self.calm)
+    @rule(data=st.data())
+    def a_deliberation_fails(self, data: st.DataObject) -> None:
+        request = self.requests.pop(data.draw(st.integers(0, len(self.requests) - 1)))
+        self.feed(DeliberationEnded(time_s=self.time_s, request=request.id, decision=None, reason="a fault"))
+
+    @rule(number=st.integers(0, 400), reply=st.sampled_from(Reply))
+    def an_answer_to_any_question(self, number: int, reply: Reply) -> None:
+        answer = Answer(reply=reply, latency_s=1.0, text=reply.value)
+        self.feed(Answered(time_s=self.time_s, question=f"q{number}", answer=answer))
+
+    @precondition(lambda self: bool(self.asked))
+    @rule(data=st.data(), reply=st.sampled_from([Reply.YES, Reply.NO]))
+    def an_answer(self, data: st.DataObject, reply: Reply) -> None:
+        """To the open question, or late, or twice."""
+        name = data.draw(st.sampled_from(self.asked))
+        open_before = list(self.open)
+        before = self.state.beliefs
+        self.feed(Answered(time_s=self.time_s, question=name, answer=Answer(reply=reply, latency_s=1.0, text="x")))
+        if name not in open_before and before is not None and self.state.beliefs is not None:
+            grew = entered(self.state.beliefs.map) - entered(before.map)
+            assert not grew, "a late answer never opens anything"
+            assert self.state.beliefs.confirmed <= before.confirmed
+
+    @precondition(lambda self: bool(self.open))
+    @rule(shown=st.booleans())
+    def a_question_is_shown_or_reworded(self, shown: bool) -> None:
+        name = self.open[0]
+        if shown:
+            self.feed(QuestionShown(time_s=self.time_s, question=name))
+        else:
+            self.feed(QuestionReworded(time_s=self.time_s, question=name, text="Say?", worded_by="a model"))
+
+    @precondition(lambda self: not self.calm)
+    @rule(order=st.sampled_from(Order))
+    def an_order(self, order: Order) -> None:
+        before = self.moving
+        self.feed(Ordered(time_s=self.time_s, order=order))
+        self.holds = order is Order.HOLD and not self.ended
+        if order is not Order.CONTINUE and not self.ended:
+            goes_on = before is not None and self.moving is before
+            assert not goes_on or self.braking, "an order decides the next motion: the present one ends"
+            assert not self.open, "who orders is not asked"
+
+    @precondition(lambda self: not self.calm)
+    @rule(link=st.sampled_from([Link.OPERATOR, Link.CAMERA, Link.MODEL]), up=st.booleans())
+    def a_link_changes(self, link: Link, up: bool) -> None:
+        self.feed(LinkChanged(time_s=self.time_s, link=link, up=up))
+
+    @invariant()
+    def holding_lasts_no_longer_than_the_battery(self) -> None:
+        if getattr(self, "holds", False) and self.state.goal.value != "hold":
+            self.holds = False  # the battery or a link has ended it
+
+    @rule(events=st.integers(1, 12))
+    def all_goes_well_for_a_while(self, events: int) -> None:
+        for _ in range(events):
+            if not self.ended:
+                self.go_well()
+
+    def go_well(self) -> None:
+        """What an undisturbed mission sees next; questions are answered by the truth."""
+        question = self.state.question
+        if question is not None:
+            truth = sample_world().truth
+            values = {gap.id: truth.value_of(gap) for gap in question.question.gaps}
+            known = all(value is not None for value in values.values())
+            says = Reply.UNSURE if not known else Reply.YES if question.question.query.holds(values) else Reply.NO
+            answer = Answer(reply=says, latency_s=0.0)
+            self.feed(Answered(time_s=self.time_s, question=question.question.id, answer=answer))
+        elif self.looks:
+            self.looks -= 1
+            self.feed(MapObserved(time_s=self.time_s, map=self.believed()))
+        elif self.requests:
+            self.deliver(self.requests.pop())
+        elif self.moving is not None:
+            note(f"flown: {type(self.moving).__name__}")
+            self.finish_motion(MotionEnd.ARRIVED)
+        else:
+            self.time_s += 5.0
+            self.feed(Ticked(time_s=self.time_s, vehicle=self.vehicle()))
+
+    def teardown(self) -> None:
+        """From here on all goes well: the mission ends."""
+        if not hasattr(self, "state"):
+            return
+        self.holds = False
+        for _ in range(600):
+            if self.ended:
+                OUTCOMES[self.state.verdict.outcome] += 1
+                return
+            self.go_well()
+        raise AssertionError(f"the mission does not end: {self.state.goal}, {self.state.activity}")
+
+
+def entered(map: SemanticMap) -> set[str]:
+    """Ids of the regions that may be flown through."""
+    return {region.id for region in map.regions if region.passable is Knowledge.YES}
+
+
+Mission.TestCase.settings = settings(
+    max_examples=40,
+    stateful_step_count=40,
+    deadline=None,
+    suppress_health_check=list(HealthCheck),
+    phases=(Phase.explicit, Phase.reuse, Phase.generate),  # shrinking a whole mission takes minutes
+)
+
+
+class TestMissionLaws(Mission.TestCase):
+    """The laws; and that the missions went far enough to try them."""
+
+    def runTest(self) -> None:  # noqa: N802  (unittest's own name)
+        OUTCOMES.clear()
+        super().runTest()
+        assert OUTCOMES[Outcome.SUCCESS] >= 3, OUTCOMES
+        assert OUTCOMES[Outcome.ABORTED] >= 1, OUTCOMES
