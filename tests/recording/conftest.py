@@ -18,7 +18,7 @@ from mintpilot.core.query import Answer, Literal, Query, Question, Reply, Saying
 from mintpilot.core.semantic_map import Cell, Knowledge, MapObject, Region, Room, SemanticMap
 from mintpilot.core.task import Action, Reference, SubGoal, Task
 from mintpilot.core.trajectory import FlightEnd, FlightLog, Trajectory
-from mintpilot.core.tree import Certificate, GapAccount, LeafReason, Mint, Node, PlanClass, ScoredQuery, StopReason
+from mintpilot.core.tree import Certificate, GapExplanation, LeafReason, Mint, Node, PlanClass, ScoredQuery, StopReason
 
 HOSTILE = "<script>alert('x')</script> & \x1b[31m\"red\""
 """What a sign in a picture, or a model, may say."""
@@ -127,7 +127,7 @@ def tell(*, label: str = "box", description: str = "the grey smoke near the gate
         classes=tuple(PlanClass(plan=leaf.plan, probability=0.5, given=(leaf.given,)) for leaf in leaves),
     )  # fmt: skip
     query = Query(literals=(Literal(gap=SMOKE, values=frozenset({PASSABLE}), saying=Saying(kind=SayingKind.VALUE)),))
-    scored = ScoredQuery(query=query, score=1.0, gain_bits=1.0, regret_saved_s=5.9, yes_probability=0.5)
+    scored = ScoredQuery(query=query, score=1.0, gain_bits=1.0, regret_saved_s=5.9, reply_probabilities=(0.5, 0.5))
     question = Question(
         query=query, text=f"Can I fly through {description}?", yes_means="I fly straight through it, 10 s",
         no_means="I fly around it, 25 s", gaps=(smoke,),
@@ -137,12 +137,12 @@ def tell(*, label: str = "box", description: str = "the grey smoke near the gate
         reason=StopReason.ONE_CLASS, top_class_probability=1.0, entropy_bits=0.0, best_gain_bits=0.0,
         bound_s=0.0 if reply in (Reply.YES, Reply.NO) else float("inf"), text="One way to fly holds 100 % of the mass.",
     )  # fmt: skip
-    accounts = (
-        GapAccount(gap_id=SMOKE, description=description, kind="obstacle", asked=True, relevant=True,
+    explanations = (
+        GapExplanation(gap_id=SMOKE, description=description, kind="obstacle", asked=True, relevant=True,
                    why="Flying around costs 14.9 s more than 2.0 s, and the paths are 6.5 m apart.",
                    cost_if_favourable_s=direct.cost_s, cost_if_unfavourable_s=around.cost_s, divergence_m=6.5,
                    entropy_bits=1.0, gain_bits=1.0, regret_saved_s=5.9),
-        GapAccount(gap_id="target:1", description="the medicine box", kind="target", asked=False, relevant=False,
+        GapExplanation(gap_id="target:1", description="the medicine box", kind="target", asked=False, relevant=False,
                    why="Its entropy of 0.57 bit does not change the way by more than 0.4 s.",
                    cost_if_favourable_s=direct.cost_s, cost_if_unfavourable_s=float("inf"), entropy_bits=0.57),
     )  # fmt: skip
@@ -176,7 +176,7 @@ def tell(*, label: str = "box", description: str = "the grey smoke near the gate
         ev.Deliberated(round=2, gaps=(target,), problem=problem, mint=None, chosen=None, alternatives=(),
                        certificate=certificate, seconds=0.03),
         ev.Timed(stage="deliberation", seconds=0.03),
-        ev.PlanChosen(plan=chosen, certificate=certificate, accounts=accounts),
+        ev.PlanChosen(plan=chosen, certificate=certificate, explanations=explanations),
         ev.Noticed(kind="new-object", text=f"Something new was seen in flight: {label}."),
         ev.LegFlown(phase="mission", stop_id="goal-1", trajectory=trajectory, log=log),
         ev.Timed(stage="flight", seconds=1.1),

@@ -12,7 +12,7 @@ from rich.console import Console
 
 from mintpilot.core import events as ev
 from mintpilot.core.errors import RecordError
-from mintpilot.core.query import Literal, Query, Reply, Saying, SayingKind
+from mintpilot.core.query import YES_PART, Evidence, Literal, Query, Reply, Saying, SayingKind
 from mintpilot.recording.build import build_record, flight_record
 from mintpilot.recording.event_json import MAX_ROWS, event_line
 from mintpilot.recording.history import History
@@ -97,8 +97,8 @@ def test_gaps_without_an_account_say_so(make_events):
 def test_an_account_of_asking_outlives_later_rounds(make_events):
     story = list(make_events())
     chosen = next(e for e in story if isinstance(e, ev.PlanChosen))
-    later = tuple(dataclasses.replace(a, asked=False, why="Settled.") for a in chosen.accounts)
-    record = record_of([*story, dataclasses.replace(chosen, accounts=later)])
+    later = tuple(dataclasses.replace(a, asked=False, why="Settled.") for a in chosen.explanations)
+    record = record_of([*story, dataclasses.replace(chosen, explanations=later)])
     assert record.gaps[0].asked
     assert "14.9 s more" in record.gaps[0].why
     assert record.gaps[1].why == "Settled."
@@ -159,7 +159,9 @@ def _worded(story):
     other = Query(literals=(Literal(gap=target.id, values=frozenset({target.values[0]}), saying=said),))
     for event in story:
         if isinstance(event, ev.Asked):
-            answer = dataclasses.replace(event.answer, also=((other, True),), understood_by="model")
+            answer = dataclasses.replace(
+                event.answer, also=(Evidence(query=other, part=YES_PART),), understood_by="model"
+            )
             better = dataclasses.replace(event.question, text="Is the <b>smoke</b> safe?", worded_by="tiny")
             first = event.question.text
             event = dataclasses.replace(event, question=better, answer=answer, first_text=first, better_s=0.8)

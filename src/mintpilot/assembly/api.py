@@ -16,7 +16,7 @@ from mintpilot.core.errors import UnknownNameError
 from mintpilot.core.events import Event
 from mintpilot.core.ports import Ask, LanguageModel, Operator, Recorder
 from mintpilot.interaction.scripted import ScriptedOperator
-from mintpilot.mission.account import first_accounts
+from mintpilot.mission.explanations import explained_first
 from mintpilot.mission.loop import fly_mission
 from mintpilot.mission.mind import Mind
 from mintpilot.mission.preview import preview
@@ -93,7 +93,7 @@ def _planned(file: MissionFile, folder: Path, talk: Talk, *, strategy: str, seed
         seen,
         mission=file.name,
         strategy=strategy,
-        accounts=first_accounts(seen.first),
+        explanations=explained_first(seen.first),
         question=question,
         seconds=seconds,
     )

@@ -57,8 +57,11 @@ def _decision_lines(report: DeliberationReport) -> Iterator[str]:
         return
     query = report.query
     yield f"It would ask: {query.text}"
-    yield f"  yes: {query.yes_means}"
-    yield f"  no:  {query.no_means}"
+    if query.option_means:
+        yield from (f"  {reply}: {means}" for reply, means in zip(query.replies, query.option_means, strict=True))
+    else:
+        yield f"  yes: {query.yes_means}"
+        yield f"  no:  {query.no_means}"
     yield f"  worth {query.gain_bits:.2f} bits and {query.regret_saved_s:.1f} s of flight"
 
 

@@ -13,7 +13,7 @@ from mintpilot.conformance.sample import require, sample_world
 from mintpilot.core.gap import GapKind, KnowledgeGap
 from mintpilot.core.mission import AskingSettings
 from mintpilot.core.ports import Ask, Fly, QueryObjective, QuerySituation, Strategy
-from mintpilot.core.query import Answer, Reply
+from mintpilot.core.query import Answer, Reply, answer_for
 from mintpilot.mission.mind import Mind, Thinking, Thought, learn, think
 from mintpilot.reasoning.belief import prior_belief
 
@@ -53,10 +53,15 @@ def check_objective(make: Callable[[], QueryObjective]) -> None:
     """
     probability = np.array([0.25, 0.25, 0.2, 0.15, 0.1, 0.05])
     class_of = np.array([0, 0, 1, 1, 2, 2])
-    cuts = np.array([[1, 1, 0, 0, 0, 0], [1, 0, 1, 0, 1, 0], [0, 0, 1, 1, 0, 0], [1, 1, 1, 1, 1, 1], [0] * 6], bool)
+    cuts = np.array([[0, 0, 1, 1, 1, 1], [0, 1, 0, 1, 0, 1], [1, 1, 0, 0, 1, 1], [0] * 6, [1] * 6], np.int8)
     regret = np.where(class_of[None, :] == np.arange(3)[:, None], 0.0, 20.0)
     situation = QuerySituation(
-        probability=probability, class_of=class_of, regret_s=regret, yes=cuts, settings=AskingSettings()
+        probability=probability,
+        class_of=class_of,
+        regret_s=regret,
+        parts=cuts,
+        part_count=np.full(len(cuts), 2),
+        settings=AskingSettings(),
     )
     objective = make()
     scores = objective.scores(situation)
@@ -75,7 +80,8 @@ def check_objective(make: Callable[[], QueryObjective]) -> None:
         probability=np.array([0.5, 0.5]),
         class_of=np.array([0, 0]),
         regret_s=np.zeros((1, 2)),
-        yes=np.array([[True, False]]),
+        parts=np.array([[0, 1]], np.int8),
+        part_count=np.array([2]),
         settings=AskingSettings(),
     )
     left = float(make().scores(settled)[0])
@@ -107,10 +113,9 @@ def _answered(
     open_gaps = {gap.id for gap in thought.findings.gaps}
     closed = sorted(set(query.gap_ids) - open_gaps)
     require(not closed, strategy, f"it asks about {closed}, which are no open gaps ({sorted(open_gaps)})")
-    repeated = query.id in {earlier.id for earlier, _ in thought.mind.asked}
+    repeated = query.id in {earlier.query.id for earlier in thought.mind.asked}
     require(not repeated, strategy, f"it asks '{query.id}' again, though the answer is known")
-    reply = Reply.YES if query.holds(truth) else Reply.NO
-    return learn(thought.mind, query, Answer(reply=reply, latency_s=0.0), settings).mind
+    return learn(thought.mind, query, answer_for(query, query.part_of(truth)), settings).mind
 
 
 def _check_flight(thought: Thought, fly: Fly, strategy: Strategy) -> None:

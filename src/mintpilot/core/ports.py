@@ -11,11 +11,11 @@ from typing import Protocol, TypeAlias
 
 from mintpilot.core.events import Event
 from mintpilot.core.gap import Assumptions, Belief, KnowledgeGap
-from mintpilot.core.geometry import Bools, Floats, Ints
+from mintpilot.core.geometry import Floats, Ints, SmallInts
 from mintpilot.core.mission import AskingSettings, Verdict
 from mintpilot.core.observation import Detection, Frame
 from mintpilot.core.plan import Plan, PlanningProblem, Stop
-from mintpilot.core.query import Answer, Meaning, Query, Question
+from mintpilot.core.query import Answer, Evidence, Meaning, Query, Question
 from mintpilot.core.trajectory import FlightLog, Trajectory, VehicleState
 from mintpilot.core.tree import Certificate, Mint, ScoredQuery
 
@@ -87,13 +87,15 @@ class QuerySituation:
     regret_s: Floats
     """(p, n) seconds lost by flying plan i under hypothesis j instead of the best; the price of failure where it would
     fail. First the plans of the classes, then other safe plans; of very large trees only the likeliest classes'."""
-    yes: Bools
-    """(q, n) the true answer to each candidate cut."""
+    parts: SmallInts
+    """(q, n) the part of each candidate query that holds each joint hypothesis: the true answer."""
+    part_count: Ints
+    """(q,) the number of parts of each query, 2 to `mintpilot.core.query.MAX_PARTS`."""
     settings: AskingSettings
 
 
 class QueryObjective(Protocol):
-    """The worth of candidate cuts (method, section 4). Called once per question."""
+    """The worth of candidate queries (method, section 4). Called once per question."""
 
     def scores(self, situation: QuerySituation) -> Floats:
         """Worth of each candidate (q,); higher is better; 0 or less: not worth asking.
@@ -105,15 +107,15 @@ class QueryObjective(Protocol):
 
 
 class Proposer(Protocol):
-    """Proposes cuts, e.g. a language model. What it proposes is checked, and scored like any cut."""
+    """Proposes queries, e.g. a language model. What it proposes is checked, and scored like any query."""
 
     @property
     def name(self) -> str:
-        """For the record: who proposed a cut."""
+        """For the record: who proposed a query."""
         ...
 
     def propose(self, mint: Mint) -> tuple[Query, ...]:
-        """Cuts over gaps that the tree branches on, in bounded time; none where it fails. Never raises."""
+        """Queries over gaps that the tree branches on, in bounded time; none where it fails. Never raises."""
         ...
 
 
@@ -129,28 +131,28 @@ class Situation:
     """Ids of obstacle gaps that got an explicit yes."""
     withdrawn: frozenset[str]
     """Ids of queries answered UNSURE: not to be asked again."""
-    asked: tuple[tuple[Query, bool], ...]
-    """Cuts that were answered, with the answer, oldest first."""
+    asked: tuple[Evidence, ...]
+    """Queries that were answered, with the answer, oldest first."""
     silent: bool
     """True after a time-out: no more questions."""
     settings: AskingSettings
     metric: ImpactMetric
     objective: QueryObjective
     proposer: Proposer | None = None
-    """Whom a strategy may ask for cuts that it does not find by itself; None: nobody."""
+    """Whom a strategy may ask for queries that it does not find by itself; None: nobody."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Ask:
-    """Put this cut to the operator."""
+    """Put this query to the operator."""
 
     scored: ScoredQuery
     alternatives: tuple[ScoredQuery, ...] = ()
     mint: Mint | None = None
     proposed: tuple[ScoredQuery, ...] = ()
-    """Cuts that a `Proposer` proposed and that were sound, scored, best first."""
+    """Queries that a `Proposer` proposed and that were sound, scored, best first."""
     bound_bits: float | None = None
-    """No cut whatever could tell more of the plan class than this; None: not worked out."""
+    """No query of its kind could tell more of the plan class than this; None: not worked out."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -178,11 +180,11 @@ class Strategy(Protocol):
 
 
 SPEAKING_S = 1.2
-"""Seconds that whoever speaks may wait for better words: a question must be out within 1.5 s of the cut."""
+"""Seconds that whoever speaks may wait for better words: a question must be out 1.5 s after its query was chosen."""
 
 
 class BetterWords(Protocol):
-    """Other words for a question, made while its own are already there to be shown. They mean the very same cut."""
+    """Other words for a question, made while its own are already there to be shown. They mean the very same query."""
 
     @property
     def done(self) -> bool:

@@ -1,4 +1,4 @@
-"""Putting questions: words, the operator's answer, what it teaches; and the account of every gap."""
+"""Putting questions: words, the operator's answer, what it teaches; and the explanation of every gap."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class Interview:
     remarks: Callable[[], Sequence[str]] = tuple
     """What went wrong with the words since it was last called, in sentences."""
     firsts: list[Thought] = field(default_factory=list, init=False)
-    """Deliberations that knew of gaps nobody had known of before: the figures of the accounts come from them."""
+    """Deliberations that knew of gaps nobody had known of before: the figures of the explanations come from them."""
     asked_gaps: list[str] = field(default_factory=list, init=False)
     rounds: int = field(default=0, init=False)
     bounds: list[str] = field(default_factory=list, init=False)

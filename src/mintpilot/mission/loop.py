@@ -8,14 +8,15 @@ from dataclasses import dataclass, replace
 
 from mintpilot.core.errors import DeviceError, InfeasibleError
 from mintpilot.core.events import MapUpdated, MissionEnded, MissionStarted, Noticed, PlanChosen, Timed
+from mintpilot.core.gap import region_of
 from mintpilot.core.mission import Outcome, Verdict
 from mintpilot.core.ports import Ask, Fly, Judge, Operator, Recorder, Vehicle
 from mintpilot.core.query import Command
 from mintpilot.core.semantic_map import SemanticMap
 from mintpilot.elicitation.wording import word_question
-from mintpilot.mission.account import account
 from mintpilot.mission.asking import Interview, Wording, put_question
 from mintpilot.mission.endings import ended, home_stop, obey, stay_or_return
+from mintpilot.mission.explanations import explanations_of
 from mintpilot.mission.eyes import Eyes
 from mintpilot.mission.flight import End, Pilot
 from mintpilot.mission.mind import Mind, Thinking, think
@@ -136,8 +137,8 @@ def _settle(crew: Crew, mind: Mind, interview: Interview, begun_s: float) -> tup
         interview.deliberated(thought, seconds)
         if not isinstance(thought.decision, Ask):
             fly = thought.decision
-            accounts = account(interview, thought)
-            record(PlanChosen(plan=fly.plan, certificate=fly.certificate, accounts=accounts))
+            explanations = explanations_of(interview, thought)
+            record(PlanChosen(plan=fly.plan, certificate=fly.certificate, explanations=explanations))
             return mind, fly
         mind, command = put_question(interview, mind, thought.decision)
         if command is not None:
@@ -148,4 +149,4 @@ def _settle(crew: Crew, mind: Mind, interview: Interview, begun_s: float) -> tup
 
 def _regions_entered(fly: Fly) -> frozenset[str]:
     """Regions that a deliberately unsafe baseline flies through."""
-    return frozenset(gap.removeprefix("obstacle:") for gap in fly.plan.enters) if fly.plan else frozenset()
+    return frozenset(region_of(gap) for gap in fly.plan.enters) if fly.plan else frozenset()

@@ -10,7 +10,7 @@ from mintpilot.core.gap import PASSABLE, Belief, CorrelationGroup, GapKind, Know
 from mintpilot.core.geometry import Vec3
 from mintpilot.core.mission import AskingSettings, Mission
 from mintpilot.core.ports import Decision, Fly, ImpactMetric, Planner, Proposer, QueryObjective, Situation, Strategy
-from mintpilot.core.query import Answer, Combine, Query, Reply
+from mintpilot.core.query import Answer, Evidence, Query, Reply
 from mintpilot.core.semantic_map import SemanticMap
 from mintpilot.core.task import Task
 from mintpilot.mapping.knowledge import apply_knowledge
@@ -49,8 +49,8 @@ class Mind:
     """Obstacle gaps that got an explicit yes."""
     withdrawn: frozenset[str] = frozenset()
     """Cuts answered UNSURE."""
-    asked: tuple[tuple[Query, bool], ...] = ()
-    """Cuts that were answered, oldest first."""
+    asked: tuple[Evidence, ...] = ()
+    """Queries that were answered, with the answer, oldest first."""
     attempts: tuple[str, ...] = ()
     """Ids of all cuts that were put, oldest first, answered or not."""
     finished: frozenset[str] = frozenset()
@@ -145,10 +145,9 @@ def learn(mind: Mind, query: Query, answer: Answer, settings: AskingSettings) ->
     mind = replace(mind, attempts=(*mind.attempts, query.id))
     if answer.reply is Reply.TIMEOUT:
         return Lesson(mind=replace(mind, silent=True))
-    if answer.reply is Reply.UNSURE:
+    if answer.part is None:
         return Lesson(mind=replace(mind, withdrawn=mind.withdrawn | {query.id}))
-    yes = answer.reply is Reply.YES
-    update = condition(mind.belief, query, answer.reply, settings.answer_error)
+    update = condition(mind.belief, query, answer.part, settings.answer_error, max_joint=settings.max_joint)
     if update.contradiction:
         return Lesson(mind=replace(mind, withdrawn=mind.withdrawn | _asked_before(mind, query)), contradiction=True)
     belief, surplus_refused = with_surplus(mind.belief, update.belief, query, answer, settings)
@@ -156,8 +155,8 @@ def learn(mind: Mind, query: Query, answer: Answer, settings: AskingSettings) ->
         mind=replace(
             mind,
             belief=belief,
-            confirmed=mind.confirmed | (_confirmed_by(query, mind.belief.gaps) if yes else frozenset()),
-            asked=(*mind.asked, (query, yes)),
+            confirmed=mind.confirmed | _confirmed_by(query, answer.part, mind.belief.gaps),
+            asked=(*mind.asked, Evidence(query=query, part=answer.part)),
         ),
         surplus_refused=surplus_refused,
     )
@@ -172,7 +171,7 @@ def _look_for_gaps(mind: Mind, parts: Thinking, start_m: Vec3, honour_wishes: bo
         finished=mind.finished,
         honour_wishes=honour_wishes,
     )
-    return findings, extend(mind.belief, findings.gaps, parts.groups)
+    return findings, extend(mind.belief, findings.gaps, parts.groups, max_joint=parts.settings.max_joint)
 
 
 def _with_budget(settings: AskingSettings, mind: Mind) -> AskingSettings:
@@ -192,9 +191,7 @@ def _asked_before(mind: Mind, query: Query) -> frozenset[str]:
     return frozenset({query.id}) if mind.attempts.count(query.id) > 1 else frozenset()
 
 
-def _confirmed_by(query: Query, gaps: Sequence[KnowledgeGap]) -> frozenset[str]:
-    """Obstacle gaps that a yes to this cut says outright to be passable: a cut about them alone, or joined by *and*."""
-    if len(query.literals) > 1 and query.combine is Combine.ANY:
-        return frozenset()
+def _confirmed_by(query: Query, part: int, gaps: Sequence[KnowledgeGap]) -> frozenset[str]:
+    """Obstacle gaps that this answer says outright to be passable."""
     obstacles = {gap.id for gap in gaps if gap.kind is GapKind.OBSTACLE}
-    return frozenset(x.gap for x in query.literals if x.gap in obstacles and x.values == frozenset({PASSABLE}))
+    return frozenset(x.gap for x in query.asserted(part) if x.gap in obstacles and x.values == frozenset({PASSABLE}))

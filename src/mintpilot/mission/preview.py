@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from mintpilot.core.errors import InfeasibleError
 from mintpilot.core.geometry import Vec3
 from mintpilot.core.ports import Ask
-from mintpilot.core.query import Answer, Reply
+from mintpilot.core.query import answer_for
 from mintpilot.mission.mind import Mind, Thinking, Thought, learn, think
 
 NEGLIGIBLE = 1e-3
@@ -71,9 +71,9 @@ def preview(
             return 0.0
         scored = thought.decision.scored
         total = 1.0
-        for reply, share in ((Reply.YES, scored.yes_probability), (Reply.NO, 1 - scored.yes_probability)):
+        for part, share in enumerate(scored.reply_probabilities):
             if share > 0:
-                lesson = learn(thought.mind, scored.query, Answer(reply=reply, latency_s=0.0), parts.settings)
+                lesson = learn(thought.mind, scored.query, answer_for(scored.query, part), parts.settings)
                 total += share * expected(lesson.mind, weight * share)
         return total
 

@@ -11,15 +11,15 @@ from mintpilot.core.geometry import Floats
 from mintpilot.core.mission import AskingSettings, CriticalityRule
 from mintpilot.core.plan import Plan
 from mintpilot.core.ports import ImpactMetric, PlanSpace
-from mintpilot.core.tree import GapAccount, Mint, Node
+from mintpilot.core.tolerances import DECIMALS, TOLERANCE
+from mintpilot.core.tree import GapExplanation, Mint, Node
 from mintpilot.reasoning.classes import class_entropy_bits, nodes_of
 from mintpilot.reasoning.entropy import entropy_bits
 from mintpilot.reasoning.metrics import expected_regret_s
 from mintpilot.reasoning.situation import regret_matrix
-from mintpilot.reasoning.tree import TOLERANCE
 
 
-def gap_accounts(
+def explain_gaps(
     space: PlanSpace,
     belief: Belief,
     mint: Mint,
@@ -27,8 +27,8 @@ def gap_accounts(
     metric: ImpactMetric,
     *,
     asked: Collection[str] | None = (),
-) -> tuple[GapAccount, ...]:
-    """The account of every gap of the belief, by id.
+) -> tuple[GapExplanation, ...]:
+    """The explanation of every gap of the belief, by id.
 
     Costs compare the best plans under the gap's best and worst value, all else as at the likeliest node of the tree
     that branches on it (at the root for gaps that no node branches on).
@@ -50,7 +50,7 @@ def gap_accounts(
         gain, saved = _worth(mint, regret, gap.id)
         bits = entropy_bits(belief.marginal(gap.id))
         made.append(
-            GapAccount(
+            GapExplanation(
                 gap_id=gap.id,
                 description=gap.description,
                 kind=gap.kind.value,
@@ -80,7 +80,7 @@ def gap_accounts(
 def _branching_node(root: Node, gap_id: str) -> Node | None:
     """The likeliest node that branches on that gap; the first one among equals."""
     found = [n for n in nodes_of(root) if n.branch_on == gap_id]
-    return max(found, key=lambda n: round(n.probability, 9), default=None)
+    return max(found, key=lambda n: round(n.probability, DECIMALS), default=None)
 
 
 def _extremes(space: PlanSpace, given: Assumptions, gap: KnowledgeGap) -> tuple[Plan | None, Plan | None]:
@@ -93,7 +93,7 @@ def _extremes(space: PlanSpace, given: Assumptions, gap: KnowledgeGap) -> tuple[
 
 
 def _worth(mint: Mint, regret_s: Floats, gap_id: str) -> tuple[float, float]:
-    """Bits that the best cut 'gap = value' tells of the plan class, and seconds of regret that the value saves."""
+    """Bits that the best query 'gap = value' tells of the plan class, and seconds of regret that the value saves."""
     if all(g.id != gap_id for g in mint.belief.gaps):
         return 0.0, 0.0
     axis, support = mint.belief.axis(gap_id), mint.support

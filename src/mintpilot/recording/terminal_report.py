@@ -12,7 +12,7 @@ from rich.text import Text
 from mintpilot.core.mission import Outcome
 from mintpilot.core.query import Reply
 from mintpilot.recording.record import GapRecord, MissionRecord, QuestionRecord
-from mintpilot.recording.report import REPLY_WORDS, number, weightiest_first
+from mintpilot.recording.report import consequence, number, reply_words, weightiest_first
 from mintpilot.recording.tree_drawing import tree_text
 from mintpilot.recording.words import OUTCOME_WORDS, STOP_WORDS, printable
 
@@ -87,10 +87,10 @@ def _asked(record: MissionRecord) -> RenderableType:
 
 
 def _question(question: QuestionRecord) -> Iterator[Text]:
-    said = f"Order: {question.command.value}" if question.command else REPLY_WORDS[question.reply]
-    consequence = {Reply.YES: question.yes_means, Reply.NO: question.no_means}.get(question.reply, "")
+    said = f"Order: {question.command.value}" if question.command else reply_words(question)
+    means = consequence(question)
     yield _plain(f"? {question.text}", "bold")
-    arrow = f" → {printable(consequence)}" if consequence and question.command is None else ""
+    arrow = f" → {printable(means)}" if means and question.command is None else ""
     facts = f"  (after {number(question.latency_s, 's')}, {number(question.gain_bits, 'bit', 2)})"
     yield Text.assemble("  ", (said, _STYLES[question.reply]), arrow, (facts, "dim"))
     for also in question.also:

@@ -13,6 +13,7 @@ from __future__ import annotations
 from mintpilot.core.errors import InputError
 from mintpilot.core.plan import Plan
 from mintpilot.core.ports import Ask, Decision, Situation, Strategy
+from mintpilot.core.tolerances import TOLERANCE
 from mintpilot.core.tree import LeafReason, Mint, PlanClass, ScoredQuery, StopReason
 from mintpilot.strategies.exhaustive import best_about, is_known
 from mintpilot.strategies.flying import (
@@ -60,7 +61,7 @@ class KnowNoStrategy(Strategy):
 
     def prediction_set(self, mint: Mint) -> tuple[PlanClass, ...]:
         """The plan classes that are likely enough; never empty: at least the likeliest one."""
-        likely = tuple(c for c in mint.classes if c.probability >= 1 - self._quantile - 1e-9)
+        likely = tuple(c for c in mint.classes if c.probability >= 1 - self._quantile - TOLERANCE)
         return likely or mint.classes[:1]
 
 

@@ -10,7 +10,7 @@ from mintpilot.strategies.mint import MintStrategy
 
 
 class RandomQueryStrategy(Strategy):
-    """MINT with cuts drawn at random among those that tell something.
+    """MINT with queries drawn at random among those that tell something.
 
     Args:
         seed: of the draws. Same seed, same questions.
@@ -20,5 +20,5 @@ class RandomQueryStrategy(Strategy):
         self._mint = MintStrategy(objective=Random(np.random.default_rng(seed)))
 
     def decide(self, situation: Situation) -> Decision:
-        """Asks a random useful cut, or flies, for the reasons of `MintStrategy`."""
+        """Asks a random useful query, or flies, for the reasons of `MintStrategy`."""
         return self._mint.decide(situation)

@@ -7,7 +7,7 @@ import re
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field
 
-from mintpilot.core.gap import Candidate, GapKind, KnowledgeGap
+from mintpilot.core.gap import Candidate, GapKind, KnowledgeGap, target_id
 from mintpilot.core.plan import Site, Stop
 from mintpilot.core.task import Action, Reference, SubGoal, Task
 from mintpilot.uncertainty.describing import describe_apart, seen
@@ -113,7 +113,7 @@ def _gap(
 ) -> KnowledgeGap:
     words = describe_apart(found, things, view.start_m)
     return KnowledgeGap(
-        id=f"target:{number}:{_slug(reference.phrase)}",
+        id=target_id(number, _slug(reference.phrase)),
         kind=GapKind.TARGET,
         subject=reference.phrase,
         description=reference.phrase if reference.phrase.lower().startswith("the ") else f"the {reference.phrase}",
