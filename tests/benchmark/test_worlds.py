@@ -9,18 +9,18 @@ import pytest
 from tests.benchmark.small import experiment
 
 from mintpilot.assembly.crews import Choices, thinking_parts
+from mintpilot.assembly.strategies import make_strategy
 from mintpilot.benchmark.calibration import FIRST_SEED, calibrate, committed, nonconformity, quantile
 from mintpilot.benchmark.conditions import asking_for, believed_world, misplaced, true_world
 from mintpilot.benchmark.experiment import Cell, Condition
 from mintpilot.benchmark.experiments import CONDITIONS, MOST_GAPS, gap_parameters, gaps
-from mintpilot.benchmark.methods import VARIANTS, make_strategy, method_of
+from mintpilot.benchmark.methods import VARIANTS, method_of
 from mintpilot.benchmark.omniscient import survey_world
 from mintpilot.benchmark.warm import WarmPlanner
 from mintpilot.core.gap import Assumptions
 from mintpilot.core.mission import CriticalityRule
 from mintpilot.mission.mind import Mind, think
 from mintpilot.reasoning.belief import prior_belief
-from mintpilot.strategies.passive import PureLlmStrategy
 
 WAREHOUSE = Cell(scenario="fire-warehouse", methods=())
 
@@ -70,8 +70,7 @@ def test_the_mixture_takes_both_stances_over_the_trials() -> None:
     mind = Mind(map=world.map, belief=prior_belief(()))
     decisions = []
     for seed in range(12):
-        strategy = make_strategy(method_of("pure-llm"), seed)
-        assert isinstance(strategy, PureLlmStrategy)
+        strategy = make_strategy(method_of("passive-mixture").strategy, seed=seed)
         mission = world.mission
         thought = think(
             mind,

@@ -214,7 +214,7 @@ def test_an_exclusive_or_does_not_end_the_asking() -> None:
 
 def test_random_is_seeded() -> None:
     s = situation(3)
-    one, other = (Random(np.random.default_rng(7)).scores(s) for _ in range(2))
+    one, other = (Random(seed=7).scores(s) for _ in range(2))
     assert np.array_equal(one, other)
 
 

@@ -15,7 +15,7 @@ from mintpilot.core.tree import StopReason
 from mintpilot.strategies.exhaustive import ExhaustiveStrategy
 from mintpilot.strategies.gap_by_gap import GapByGapStrategy
 from mintpilot.strategies.mint import MintStrategy
-from mintpilot.strategies.passive import ConservativeStrategy, PureLlmStrategy, RiskyStrategy
+from mintpilot.strategies.passive import ConservativeStrategy, PassiveMixtureStrategy, RiskyStrategy
 from mintpilot.strategies.random_query import RandomQueryStrategy
 from oracles.worlds import BruteForce, World, hypotheses, random_world
 
@@ -27,7 +27,7 @@ ALL: list[type[Strategy]] = [
     RandomQueryStrategy,
     ConservativeStrategy,
     RiskyStrategy,
-    PureLlmStrategy,
+    PassiveMixtureStrategy,
 ]
 
 
@@ -207,10 +207,10 @@ def test_passive_methods_do_what_the_paper_says() -> None:
         assert fly.plan.skips == {"room0"}
 
 
-def test_pure_llm_is_a_seeded_mixture() -> None:
+def test_the_passive_mixture_is_seeded() -> None:
     situation = open_situation(gate(goals=2, rooms=1), EXACT)
-    flown = [PureLlmStrategy(seed).decide(situation) for seed in range(40)]
-    again = [PureLlmStrategy(seed).decide(situation) for seed in range(40)]
+    flown = [PassiveMixtureStrategy(seed).decide(situation) for seed in range(40)]
+    again = [PassiveMixtureStrategy(seed).decide(situation) for seed in range(40)]
     assert [f.plan.signature for f in flown] == [f.plan.signature for f in again]
     assert {f.unsafe for f in flown} == {True, False}
     assert {f.plan.binds for f in flown} == {(("target", "g0"),), (("target", "g1"),)}

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from contextlib import AbstractContextManager, ExitStack
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import StrEnum
 
 import numpy as np
 
 from mintpilot.assembly.registry import load
+from mintpilot.assembly.strategies import Argument, make_objective, make_strategy, strategy_label
 from mintpilot.assembly.talk import Talk
 from mintpilot.assembly.worlds import World
 from mintpilot.core.geometry import GridFrame
@@ -41,6 +42,8 @@ class Choices:
     """What a command line or a caller chooses."""
 
     strategy: str = "mint"
+    strategy_arguments: Mapping[str, Argument] = field(default_factory=dict)
+    """The strategy's own, e.g. ``{"quantile": 0.8}``."""
     vehicle: VehicleChoice = VehicleChoice.MUJOCO
     planner: str = "grid"
     perception: str = "geometric"
@@ -48,19 +51,20 @@ class Choices:
 
 
 def thinking_parts(world: World, choices: Choices, talk: Talk | None = None) -> Thinking:
-    """The parts that deliberation is done with; ``talk`` may bring somebody who proposes cuts.
+    """The parts that deliberation is done with; ``talk`` may bring somebody who proposes queries.
 
     Raises:
         UnknownNameError: a strategy, objective, metric or planner that nobody registered.
+        InputError: the strategy does not take those arguments.
     """
     asking = world.mission.asking
     return Thinking(
         mission=world.mission,
         task=world.task,
         planner=load("planner", choices.planner)(),
-        strategy=load("strategy", choices.strategy)(),
+        strategy=make_strategy(choices.strategy, seed=world.seed, arguments=choices.strategy_arguments),
         metric=load("metric", asking.impact_metric)(),
-        objective=load("objective", asking.objective)(),
+        objective=make_objective(asking.objective, seed=world.seed),
         groups=world.groups,
         proposer=talk.proposer if talk is not None else None,
     )
@@ -162,7 +166,7 @@ class _CrewContext(AbstractContextManager[Crew]):
             language_model=self._talk.model_name,
             simulated=True,
             watch_map=watch_map,
-            strategy_name=self._choices.strategy,
+            strategy_name=strategy_label(self._choices.strategy, self._choices.strategy_arguments),
             seed=self._world.seed,
         )
 

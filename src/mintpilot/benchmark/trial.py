@@ -8,12 +8,13 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from mintpilot.assembly.crews import Choices, VehicleChoice, crew_for, scripted_operator
+from mintpilot.assembly.strategies import make_strategy
 from mintpilot.assembly.talk import talk_for
 from mintpilot.assembly.worlds import World
 from mintpilot.benchmark.conditions import asking_for
 from mintpilot.benchmark.deadline import TrialTimeoutError, deadline
 from mintpilot.benchmark.experiment import Cell, Experiment
-from mintpilot.benchmark.methods import Method, make_strategy
+from mintpilot.benchmark.methods import Method
 from mintpilot.benchmark.records import TrialRecord
 from mintpilot.benchmark.shared_survey import SharedSurvey
 from mintpilot.benchmark.tally import Tally
@@ -134,7 +135,8 @@ class _Flight:
         operator = scripted_operator(world, person)
         talk = talk_for(LanguageSpec(), llm=experiment.llm)
         with crew_for(world, choices, operator=operator, recorder=tally, talk=talk) as crew:
-            thinking = replace(crew.thinking, strategy=make_strategy(method, world.seed))
+            made = make_strategy(method.strategy, seed=world.seed, arguments=method.arguments)
+            thinking = replace(crew.thinking, strategy=made)
             if planner is not None:
                 thinking = replace(thinking, planner=planner)
             named = replace(crew, thinking=thinking, strategy_name=method.name, survey=self._timed(crew, survey))

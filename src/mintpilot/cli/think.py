@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -12,11 +12,22 @@ if TYPE_CHECKING:
     from mintpilot.assembly.deliberation import DeliberationReport, GapReport
 
 
-def think(path: Path, *, strategy: str, seed: int | None, llm: str | None, lang: str | None, as_json: bool) -> ExitCode:
+def think(
+    path: Path,
+    *,
+    strategy: str,
+    strategy_args: Iterable[str],
+    seed: int | None,
+    llm: str | None,
+    lang: str | None,
+    as_json: bool,
+) -> ExitCode:
     """Deliberates on the mission in that file and prints what came of it."""
     from mintpilot.assembly.api import plan_mission
+    from mintpilot.assembly.strategies import parse_arguments
 
-    report = plan_mission(path, strategy=strategy, seed=seed, llm=llm, lang=lang)
+    arguments = parse_arguments(strategy_args)
+    report = plan_mission(path, strategy=strategy, strategy_arguments=arguments, seed=seed, llm=llm, lang=lang)
     print(report.model_dump_json() if as_json else "\n".join(lines_of(report)))
     return ExitCode.SUCCESS
 

@@ -166,6 +166,8 @@ class Fly:
     """True only for baselines that fly through what is not known passable; refused outside a simulator."""
     proposed: tuple[ScoredQuery, ...] = ()
     """As in `Ask`, where proposals were looked at and none was worth asking."""
+    notices: tuple[str, ...] = ()
+    """What the person should know of how this was decided, e.g. which bound on the work was met, in plain sentences."""
 
 
 Decision: TypeAlias = Ask | Fly

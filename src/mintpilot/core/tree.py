@@ -130,6 +130,8 @@ class StopReason(StrEnum):
     """No plan exists under any hypothesis that is left."""
     NEVER_ASKS = "never-asks"
     """The strategy does not ask."""
+    LIMIT = "limit"
+    """A bound on the work was met: the cautious plan is flown."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

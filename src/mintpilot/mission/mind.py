@@ -73,6 +73,8 @@ class Thought:
         """What bounds on the work left out, in plain sentences: plans stay safe, but may not be the best."""
         mint = self.decision.mint
         notes = self.situation.space.notes
+        if isinstance(self.decision, Fly):
+            notes = (*notes, *(notice.rstrip(".") for notice in self.decision.notices))
         if mint is None or not mint.not_expanded:
             return notes
         return (*notes, f"{mint.not_expanded} leaves of the tree were not expanded; they get the cautious plan")

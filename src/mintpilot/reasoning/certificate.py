@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Final
+
 import numpy as np
 
 from mintpilot.core.gap import Belief
@@ -11,7 +13,7 @@ from mintpilot.core.tree import Certificate, Mint, StopReason
 from mintpilot.reasoning.classes import cheapest_under, class_entropy_bits
 from mintpilot.reasoning.situation import may_fail, succeeds
 
-_BECAUSE = {
+_BECAUSE: Final = {
     StopReason.NO_GAPS: "Nothing that is unknown bears on the task.",
     StopReason.ONE_CLASS: "One way to fly is right with {top:.1%} probability.",
     StopReason.GOOD_FOR_ALL: "One plan succeeds whatever the answers would be.",
@@ -20,6 +22,7 @@ _BECAUSE = {
     StopReason.SILENCE: "The operator does not answer.",
     StopReason.INFEASIBLE: "Nothing can be flown under anything that is still possible.",
     StopReason.NEVER_ASKS: "This method does not ask.",
+    StopReason.LIMIT: "A bound on the work was reached.",
 }
 
 

@@ -18,7 +18,7 @@ from mintpilot.recording.frames import FrameStore, crop_jpeg
 from mintpilot.recording.record import GapRecord, MissionRecord, QuestionRecord, SeenRecord
 from mintpilot.recording.tree_drawing import percent
 from mintpilot.recording.tree_svg import tree_svg
-from mintpilot.recording.words import OUTCOME_WORDS, STOP_WORDS
+from mintpilot.recording.words import OUTCOME_WORDS
 
 MAX_PICTURES = 18
 """Close-ups shown; what bears on a gap comes first."""
@@ -81,7 +81,6 @@ def report_html(record: MissionRecord, folder: Path) -> str:
         gaps=weightiest_first(record.gaps),
         tone="good" if record.outcome is Outcome.SUCCESS else "stopped" if record.outcome in _STOPPED else "bad",
         headline=OUTCOME_WORDS[record.outcome],
-        stop_words=STOP_WORDS[record.certificate.reason] if record.certificate else "",
         reply_words=reply_words,
         consequence=consequence,
         plot=_data_uri(plot.read_bytes(), "image/svg+xml") if plot.is_file() else "",

@@ -14,7 +14,7 @@ from mintpilot.core.query import Reply
 from mintpilot.recording.record import GapRecord, MissionRecord, QuestionRecord
 from mintpilot.recording.report import consequence, number, reply_words, weightiest_first
 from mintpilot.recording.tree_drawing import tree_text
-from mintpilot.recording.words import OUTCOME_WORDS, STOP_WORDS, printable
+from mintpilot.recording.words import OUTCOME_WORDS, printable
 
 WIDTH = 100
 """Columns that the report fits into."""
@@ -103,7 +103,7 @@ def _decided(record: MissionRecord) -> RenderableType:
         tree = tree_text(record.tree, max_nodes=15).splitlines()
         lines.extend(Text(line, no_wrap=True, overflow="ellipsis") for line in tree)
     if record.certificate is not None:
-        lines.append(_plain(f"{STOP_WORDS[record.certificate.reason]} {record.certificate.text}"))
+        lines.append(_plain(record.certificate.text))
     return _section("How it decided", lines or [Text("It was not decided.")])
 
 

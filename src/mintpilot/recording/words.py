@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from mintpilot.core.gap import BLOCKED, PASSABLE, PRESENT, Assumptions, GapKind, KnowledgeGap
 from mintpilot.core.mission import Outcome
 from mintpilot.core.query import YES_PART, Combine, Evidence, Query
-from mintpilot.core.tree import LeafReason, StopReason
+from mintpilot.core.tree import LeafReason
 
 LEAF_WORDS: dict[LeafReason, str] = {
     LeafReason.RELIES_ON_NOTHING: "depends on nothing unknown",
@@ -17,18 +17,6 @@ LEAF_WORDS: dict[LeafReason, str] = {
     LeafReason.NOT_EXPANDED: "not worked out any further",
 }
 """Why a branch of the tree ends."""
-
-STOP_WORDS: dict[StopReason, str] = {
-    StopReason.NO_GAPS: "Nothing that bears on the task is unknown.",
-    StopReason.ONE_CLASS: "One way to fly is as good as certain.",
-    StopReason.GOOD_FOR_ALL: "One way to fly is good whatever is still unknown.",
-    StopReason.NO_GAIN: "No further question would change the flight.",
-    StopReason.BUDGET: "All questions that were allowed have been asked.",
-    StopReason.SILENCE: "Nobody answered.",
-    StopReason.INFEASIBLE: "Nothing can be flown, whatever the answers would be.",
-    StopReason.NEVER_ASKS: "This strategy does not ask.",
-}
-"""Why the asking stopped."""
 
 OUTCOME_WORDS: dict[Outcome, str] = {
     Outcome.SUCCESS: "Mission accomplished",

@@ -17,6 +17,7 @@ from mintpilot.elicitation.choose import choose
 from mintpilot.reasoning.situation import plans_of, regret_matrix
 from mintpilot.strategies.confirming import confirm_or_avoid
 from mintpilot.strategies.flying import (
+    answerable,
     best_safe_plan,
     fly,
     fly_cautiously,
@@ -86,7 +87,7 @@ def _rank(situation: Situation, mint: Mint, regret_s: Floats, objective: QueryOb
     """The enumerated queries, best first."""
     queries = candidate_queries(mint, start_m=situation.problem.start_m, refused=situation.withdrawn)
     asked = {one.query.id for one in situation.asked}
-    return choose(queries, mint, regret_s, objective, situation.settings, asked=asked)
+    return choose(answerable(queries, situation), mint, regret_s, objective, situation.settings, asked=asked)
 
 
 def _settled(situation: Situation, mint: Mint) -> tuple[Plan, StopReason] | None:

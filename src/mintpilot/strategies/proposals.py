@@ -17,6 +17,7 @@ from mintpilot.elicitation.objectives.channel import noise_bits
 from mintpilot.elicitation.partitions import part_row, partition_keys
 from mintpilot.elicitation.sentences import is_sayable
 from mintpilot.reasoning.entropy import entropy_bits
+from mintpilot.strategies.flying import answerable
 
 MARGIN_BITS = 0.05
 """A query that is so near to the bound on gain leaves nothing worth waiting for."""
@@ -105,7 +106,7 @@ def sound_proposals(situation: Situation, mint: Mint, proposed: Sequence[Query])
         if any(key) and key not in known:
             known.add(key)
             sound.append(query)
-    return tuple(sound)
+    return answerable(sound, situation)
 
 
 def _key(query: Query, mint: Mint) -> bytes:

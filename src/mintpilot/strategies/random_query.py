@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from mintpilot.core.ports import Decision, Situation, Strategy
 from mintpilot.elicitation.objectives.random import Random
 from mintpilot.strategies.mint import MintStrategy
@@ -17,7 +15,7 @@ class RandomQueryStrategy(Strategy):
     """
 
     def __init__(self, seed: int = 0) -> None:
-        self._mint = MintStrategy(objective=Random(np.random.default_rng(seed)))
+        self._mint = MintStrategy(objective=Random(seed))
 
     def decide(self, situation: Situation) -> Decision:
         """Asks a random useful query, or flies, for the reasons of `MintStrategy`."""

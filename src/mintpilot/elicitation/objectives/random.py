@@ -13,11 +13,11 @@ class Random(QueryObjective):
     """Ranks the queries that tell something of the plan class at random.
 
     Args:
-        rng: where the ranks come from; by default a generator with seed 0. Same generator, same questions.
+        seed: of the draws. Same seed, same questions.
     """
 
-    def __init__(self, rng: np.random.Generator | None = None) -> None:
-        self._rng = rng or np.random.default_rng(0)
+    def __init__(self, seed: int = 0) -> None:
+        self._rng = np.random.default_rng(seed)
 
     def scores(self, situation: QuerySituation) -> Floats:
         """Numbers (q,) above 0 for queries with gain, 0 for the others."""
