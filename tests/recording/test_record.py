@@ -12,7 +12,18 @@ from rich.console import Console
 
 from mintpilot.core import events as ev
 from mintpilot.core.errors import RecordError
-from mintpilot.core.query import YES_PART, Evidence, Literal, Query, Reply, Saying, SayingKind
+from mintpilot.core.query import (
+    YES_PART,
+    Evidence,
+    Literal,
+    Option,
+    Query,
+    Reply,
+    Saying,
+    SayingKind,
+    answer_for,
+    choice,
+)
 from mintpilot.recording.build import build_record, flight_record
 from mintpilot.recording.event_json import MAX_ROWS, event_line
 from mintpilot.recording.history import History
@@ -198,3 +209,48 @@ def test_without_a_model_the_report_says_nothing_of_one(make_events, tmp_path):
     report = report_html(record_of(make_events()), tmp_path)
     assert "Shown first as" not in report
     assert "proposed to ask" not in report
+
+
+def test_a_choice_is_in_the_record_with_all_its_replies(make_events, tmp_path):
+    story = list(make_events())
+    target = next(e for e in story if isinstance(e, ev.Deliberated)).gaps[1]
+    options = [
+        Option(
+            label=f"the {value}",
+            literals=(
+                Literal(gap=target.id, values=frozenset({value}), saying=Saying(kind=SayingKind.VALUE, value=value)),
+            ),
+        )
+        for value in target.values[:2]
+    ]
+    query = choice(options, (target,))
+    means = tuple(f"I fly to {query.part_words(part)}" for part in range(query.part_count))
+    even = (1 / query.part_count,) * query.part_count
+
+    def told(event, part):
+        if isinstance(event, ev.Asked):
+            question = dataclasses.replace(event.question, query=query, option_means=means)
+            scored = dataclasses.replace(event.scored, query=query, reply_probabilities=even)
+            return dataclasses.replace(event, question=question, scored=scored, answer=answer_for(query, part))
+        return event
+
+    for part in range(query.part_count):
+        record = record_of([told(event, part) for event in story])
+        (question,) = record.questions
+        assert (question.reply, question.option) == (Reply.OPTION, part)
+        assert question.replies == tuple(query.part_words(i) for i in range(query.part_count))
+        assert question.reply_probabilities == pytest.approx(even)
+        assert MissionRecord.model_validate_json(record.model_dump_json()) == record
+        page = report_html(record, tmp_path)
+        assert query.part_words(part) in page
+        assert means[part] in page
+
+
+def test_a_record_of_before_there_were_choices_is_read(make_events):
+    data = json.loads(record_of(make_events()).model_dump_json())
+    (question,) = data["questions"]
+    for name in ("reply_probabilities", "replies", "option_means", "option"):
+        del question[name]
+    question["yes_probability"] = 0.5
+    (old,) = MissionRecord.model_validate(data).questions
+    assert (old.replies, old.option, old.yes_probability) == (("yes", "no"), None, 0.5)

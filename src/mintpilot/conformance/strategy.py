@@ -43,7 +43,7 @@ def check_strategy(make: Callable[[], Strategy]) -> None:
 
 
 def check_objective(make: Callable[[], QueryObjective]) -> None:
-    """One number for each cut, the same each time, and nothing for a cut that tells nothing of the plan.
+    """One number for each query, the same each time, and nothing for a query that tells nothing of the plan.
 
     Args:
         make: makes a fresh objective; called more than once.
@@ -53,29 +53,34 @@ def check_objective(make: Callable[[], QueryObjective]) -> None:
     """
     probability = np.array([0.25, 0.25, 0.2, 0.15, 0.1, 0.05])
     class_of = np.array([0, 0, 1, 1, 2, 2])
-    cuts = np.array([[0, 0, 1, 1, 1, 1], [0, 1, 0, 1, 0, 1], [1, 1, 0, 0, 1, 1], [0] * 6, [1] * 6], np.int8)
+    parts = np.array(
+        [[0, 0, 1, 1, 1, 1], [0, 1, 0, 1, 0, 1], [1, 1, 0, 0, 1, 1], [0] * 6, [1] * 6, [0, 0, 1, 1, 2, 2], [2] * 6],
+        np.int8,
+    )
+    part_count = np.array([2, 2, 2, 2, 2, 3, 3])
     regret = np.where(class_of[None, :] == np.arange(3)[:, None], 0.0, 20.0)
     situation = QuerySituation(
         probability=probability,
         class_of=class_of,
         regret_s=regret,
-        parts=cuts,
-        part_count=np.full(len(cuts), 2),
+        parts=parts,
+        part_count=part_count,
         settings=AskingSettings(),
     )
     objective = make()
     scores = objective.scores(situation)
-    rule = f"scores of shape {scores.shape} for {len(cuts)} cuts; one number for each it must be"
-    require(scores.shape == (len(cuts),), objective, rule)
+    rule = f"scores of shape {scores.shape} for {len(parts)} queries; one number for each it must be"
+    require(scores.shape == (len(parts),), objective, rule)
     require(bool(np.isfinite(scores).all()), objective, f"scores {scores.tolist()} are not all finite")
     again = make().scores(situation)
     require(
         np.array_equal(scores, again), objective, f"a fresh one gives {again.tolist()} instead of {scores.tolist()}"
     )
-    for index, what in ((3, "yes"), (4, "no")):
-        rule = f"a cut that is always answered {what} scores {scores[index]:g}; what tells nothing scores 0 or less"
+    for index, what in ((3, "yes"), (4, "no"), (6, "by its third option")):
+        rule = f"a query that is always answered {what} scores {scores[index]:g}; what tells nothing scores 0 or less"
         require(scores[index] <= 1e-9, objective, rule)
-    require(float(scores[0]) > 0, objective, f"the cut that settles a plan scores {scores[0]:g}; above 0 it must be")
+    require(float(scores[0]) > 0, objective, f"the query that settles a plan scores {scores[0]:g}; above 0 it must be")
+    require(float(scores[5]) > 0, objective, f"the choice among the plans scores {scores[5]:g}; above 0 it must be")
     settled = QuerySituation(
         probability=np.array([0.5, 0.5]),
         class_of=np.array([0, 0]),
@@ -85,7 +90,7 @@ def check_objective(make: Callable[[], QueryObjective]) -> None:
         settings=AskingSettings(),
     )
     left = float(make().scores(settled)[0])
-    require(left <= 1e-9, objective, f"one plan is left, yet a cut still scores {left:g}; 0 or less it must be")
+    require(left <= 1e-9, objective, f"one plan is left, yet a query still scores {left:g}; 0 or less it must be")
 
 
 def _truths(gaps: tuple[KnowledgeGap, ...]) -> Iterator[Mapping[str, str]]:
@@ -133,7 +138,7 @@ def _check_silence(strategy: Strategy, settings: AskingSettings) -> None:
 
 
 def _check_doubt(strategy: Strategy, settings: AskingSettings) -> None:
-    """Nobody knows anything: each cut may be put once, and the asking must end."""
+    """Nobody knows anything: each query may be put once, and the asking must end."""
     mind = Mind(map=sample_world().map, belief=prior_belief(()))
     for _ in range(2 * _BUDGET):
         decision = _think(mind, strategy, settings).decision

@@ -64,7 +64,7 @@ class Deliberated:
     proposed: tuple[ScoredQuery, ...] = ()
     """Queries that a language model proposed and that were sound, scored, best first."""
     bound_bits: float | None = None
-    """No query of that kind could have told more than this; None: not worked out."""
+    """No query of that kind could have a higher gain than this; None: not worked out."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -152,7 +152,7 @@ class Ask:
     proposed: tuple[ScoredQuery, ...] = ()
     """Queries that a `Proposer` proposed and that were sound, scored, best first."""
     bound_bits: float | None = None
-    """No query of its kind could tell more of the plan class than this; None: not worked out."""
+    """No query of its kind could have a higher gain than this; None: not worked out."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -205,7 +205,7 @@ class Operator(Protocol):
         """Shows or says the question and waits at most ``patience_s`` seconds; silence is `Reply.TIMEOUT`.
 
         Args:
-            question: with the consequences of Yes and of No, which are always told beside the words.
+            question: with the consequences of Yes and of No, which always stand beside the words.
             patience_s: how long an answer is waited for, seconds.
             better: other words that may be ready a little later. A screen shows the question at once and these when
                 they come; a voice may wait for them, `SPEAKING_S` at most. `Answer.better_s` says when they were

@@ -2,84 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from itertools import combinations
-from typing import TypeAlias
 
 import numpy as np
 
 from mintpilot.core.errors import MissionError
 from mintpilot.core.gap import Joint, KnowledgeGap
-from mintpilot.core.geometry import Bools, SmallInts
+from mintpilot.core.geometry import SmallInts
+from mintpilot.core.predicate import (
+    Combine,
+    Domain,
+    Literal,
+    Option,
+    Saying,
+    SayingKind,
+    contents,
+    exclusive,
+    holds,
+    truths,
+)
 
-
-class SayingKind(StrEnum):
-    """In which way a literal can be put into words."""
-
-    VALUE = "value"
-    """``gap = value``."""
-    ATTRIBUTE = "attribute"
-    """An attribute of a referent: ``name`` is ``value``."""
-    RELATION = "relation"
-    """A relation of a referent to another thing: ``name`` (``larger than``, ``left of`` …) ``value``."""
-    THRESHOLD = "threshold"
-    """``value`` or more, for ordered values."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, order=True)
-class Saying:
-    """How a literal is said. It has no meaning of its own: the values of the literal are the meaning."""
-
-    kind: SayingKind
-    name: str = ""
-    value: str = ""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Literal:
-    """True when the gap's value is one of ``values``."""
-
-    gap: str
-    """Id of the gap."""
-    values: frozenset[str]
-    """The values for which it holds."""
-    saying: Saying
-
-    def holds(self, assignment: Mapping[str, str]) -> bool:
-        """Whether it is true under a joint hypothesis (gap id → value). Raises `KeyError` for a missing gap."""
-        return assignment[self.gap] in self.values
-
-
-class Combine(StrEnum):
-    """How the literals of a query are joined."""
-
-    ALL = "all"
-    ANY = "any"
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Option:
-    """One part of a choice, with the words that name it."""
-
-    label: str
-    """Short: ``the red box``."""
-    literals: tuple[Literal, ...]
-    """One, or two and more joined by ``combine``."""
-    combine: Combine = Combine.ALL
-
-    def __post_init__(self) -> None:
-        if not self.literals or not self.label.strip():
-            raise MissionError(f"option '{self.label}': it needs a label and at least one literal")
-
-    def holds(self, assignment: Mapping[str, str]) -> bool:
-        """Whether it is true under a joint hypothesis (gap id → value)."""
-        return _holds(self.literals, self.combine, assignment)
-
-
-Domain: TypeAlias = tuple[tuple[str, tuple[str, ...]], ...]
-"""Ids of gaps with their values, one axis each."""
 YES_PART, NO_PART = 0, 1
 """The two parts of a yes/no query."""
 NONE_OF_THESE = "none of these"
@@ -115,7 +60,7 @@ class Query:
         if self.none_of_these and not self.options:
             raise MissionError("'none of these' is a part of choices only")
         for one, other in combinations(self.options, 2):
-            if not _exclusive(one, other):
+            if not exclusive(one, other):
                 raise MissionError(f"options '{one.label}' and '{other.label}' may hold at once; they must exclude")
 
     @property
@@ -132,8 +77,8 @@ class Query:
     def id(self) -> str:
         """Stable name made of its contents: equal queries said alike have equal ids."""
         if not self.options:
-            return _contents(self.literals, self.combine)
-        named = [f"[{_contents(x.literals, x.combine)}]" for x in self.options]
+            return contents(self.literals, self.combine)
+        named = [f"[{contents(x.literals, x.combine)}]" for x in self.options]
         return " | ".join([*named, "else"] if self.none_of_these else named)
 
     @property
@@ -153,7 +98,7 @@ class Query:
         """
         if self.options:
             raise MissionError(f"query '{self.id}' is a choice: it has no yes and no")
-        return _holds(self.literals, self.combine, assignment)
+        return holds(self.literals, self.combine, assignment)
 
     def part_of(self, assignment: Mapping[str, str]) -> int:
         """The part, 0 to `part_count` - 1, that holds a joint hypothesis (gap id → value).
@@ -183,10 +128,10 @@ class Query:
     def parts_over(self, domain: Domain) -> SmallInts:
         """As `part_table`, over the values of these gaps, one axis each."""
         if not self.options:
-            return np.where(_truths(self.literals, self.combine, domain), YES_PART, NO_PART).astype(np.int8)
+            return np.where(truths(self.literals, self.combine, domain), YES_PART, NO_PART).astype(np.int8)
         parts: SmallInts = np.full([len(values) for _, values in domain], len(self.options), np.int8)
         for part, option in enumerate(self.options):
-            parts[_truths(option.literals, option.combine, domain)] = part
+            parts[truths(option.literals, option.combine, domain)] = part
         if not self.none_of_these and parts.max() == len(self.options):
             raise MissionError(f"the options of query '{self.id}' do not cover everything: it needs 'none of these'")
         return parts
@@ -223,52 +168,8 @@ def choice(options: Sequence[Option], gaps: Iterable[KnowledgeGap]) -> Query:
     domain = tuple((name, known[name].values) for name in spoken_of)
     covered = np.zeros([len(values) for _, values in domain], bool)
     for option in options:
-        covered |= _truths(option.literals, option.combine, domain)
+        covered |= truths(option.literals, option.combine, domain)
     return Query(options=tuple(options), none_of_these=not covered.all())
-
-
-def _holds(literals: Sequence[Literal], combine: Combine, assignment: Mapping[str, str]) -> bool:
-    truths = (x.holds(assignment) for x in literals)
-    return all(truths) if combine is Combine.ALL else any(truths)
-
-
-def _truths(literals: Sequence[Literal], combine: Combine, domain: Domain) -> Bools:
-    """Where the literals hold, one axis for each gap of the domain."""
-    every = combine is Combine.ALL
-    axes = {name: axis for axis, (name, _) in enumerate(domain)}
-    table: Bools = np.full([len(values) for _, values in domain], every)
-    for literal in literals:
-        axis = axes[literal.gap]
-        shape = [1] * table.ndim
-        shape[axis] = -1
-        true = np.array([v in literal.values for v in domain[axis][1]]).reshape(shape)
-        table = table & true if every else table | true
-    return table
-
-
-def _exclusive(one: Option, other: Option) -> bool:
-    """Whether the two never hold at once: each way to fulfil the one rules out each way to fulfil the other."""
-    return all(
-        any(values.isdisjoint(second[gap]) for gap, values in first.items() if gap in second)
-        for first in _ways(one)
-        for second in _ways(other)
-    )
-
-
-def _ways(option: Option) -> Iterator[dict[str, frozenset[str]]]:
-    """The ways to fulfil an option: for some gaps, the values that each must have one of."""
-    if option.combine is Combine.ANY:
-        yield from ({x.gap: x.values} for x in option.literals)
-        return
-    needed: dict[str, frozenset[str]] = {}
-    for literal in option.literals:
-        needed[literal.gap] = needed.get(literal.gap, literal.values) & literal.values
-    yield needed
-
-
-def _contents(literals: Iterable[Literal], combine: Combine) -> str:
-    named = (f"{x.gap}∈{{{','.join(sorted(x.values))}}}" for x in literals)
-    return f" {'and' if combine is Combine.ALL else 'or'} ".join(sorted(named))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -375,3 +276,26 @@ class Meaning:
     """See `Answer.also`."""
     by: str = "rules"
     """Who understood them."""
+
+
+__all__ = [
+    "MAX_PARTS",
+    "NONE_OF_THESE",
+    "NO_PART",
+    "YES_PART",
+    "Answer",
+    "Combine",
+    "Command",
+    "Domain",
+    "Evidence",
+    "Literal",
+    "Meaning",
+    "Option",
+    "Query",
+    "Question",
+    "Reply",
+    "Saying",
+    "SayingKind",
+    "answer_for",
+    "choice",
+]

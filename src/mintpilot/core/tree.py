@@ -121,7 +121,7 @@ class StopReason(StrEnum):
     GOOD_FOR_ALL = "good-for-all"
     """A plan succeeds within delta_c of the best under every joint hypothesis above the floor."""
     NO_GAIN = "no-gain"
-    """No query that is left tells anything of the plan, or none is worth its price."""
+    """No query that is left has a gain on the plan, or none is worth its price."""
     BUDGET = "budget"
     """The number of questions allowed is spent."""
     SILENCE = "silence"

@@ -72,7 +72,7 @@ def candidate_queries(
     most = max(1, min(MAX_QUERIES, MAX_CELLS // max(1, support.size)))
     looked_at = language.queries[: 2 * most]
     rows = language.parts(mint.belief, len(looked_at))[:, support]
-    # Of those that divide alike the first one is the easiest.
+    # Of those that divide alike the first one has the least phrasing cost.
     keys = partition_keys(rows)
     _, first, key_of = np.unique(keys, axis=0, return_index=True, return_inverse=True)
     barred = {key_of.ravel()[i] for i, query in enumerate(looked_at) if refused and query.id in refused}
@@ -83,7 +83,7 @@ def candidate_queries(
 
 @dataclass(frozen=True, eq=False)
 class _Language:
-    """Every query that can be asked about some gaps, easiest first, and their parts where that is a small table."""
+    """Every query that can be asked about some gaps, by phrasing cost, and their parts where that is a small table."""
 
     queries: tuple[Query, ...]
     tables: dict[int, SmallInts]

@@ -72,7 +72,7 @@ def choose(
 ) -> tuple[ScoredQuery, ...]:
     """The queries with their worth, best first; ties go to the one of less phrasing cost, then by id.
 
-    A query that was answered before is left out unless answers may be wrong: then asking again tells something new.
+    A query that was answered before is left out unless answers may be wrong: then asking again has some gain.
 
     Args:
         queries: candidates over gaps on the tree's axes.

@@ -92,7 +92,7 @@ def _flight(plan: Plan | None, sure: bool, about: tuple[KnowledgeGap, ...]) -> s
 
 
 def _general(query: Query, about: tuple[KnowledgeGap, ...], part: int) -> str:
-    """Consequences where no tree tells them."""
+    """Consequences where there is no tree to take them from."""
     if query.is_choice:
         return "I plan with this"
     yes = part == YES_PART

@@ -34,7 +34,7 @@ class Posterior:
     contradiction: bool
     """The answer has no probability left (answer error 0), or far less than the answer error explains."""
     expected: float
-    """Probability with which this reply was expected, 0 to 1; 1 for replies that tell nothing."""
+    """Probability with which this reply was expected, 0 to 1; 1 for replies without information."""
 
 
 def prior_belief(
@@ -77,7 +77,7 @@ def condition(
     Args:
         belief: before the answer.
         query: what was asked.
-        part: which of its parts the answer names (`Answer.part`); None: it names none and tells nothing.
+        part: which of its parts the answer names (`Answer.part`); None: it names none and has no information.
         answer_error: probability of a wrong answer [e].
         max_joint: bound on the cells of one factor.
 
@@ -125,7 +125,7 @@ def extend(
 
 
 def _carried(factor: Joint, wanted: dict[str, KnowledgeGap]) -> Joint | None:
-    """What an old factor tells of the gaps that are still wanted; None where that is nothing."""
+    """What an old factor says of the gaps that are still wanted; None where that is nothing."""
     stay = [g.id for g in factor.gaps if g.id in wanted and set(wanted[g.id].values) <= set(g.values)]
     if not stay:
         return None

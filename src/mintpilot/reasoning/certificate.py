@@ -17,7 +17,7 @@ _BECAUSE: Final = {
     StopReason.NO_GAPS: "Nothing that is unknown bears on the task.",
     StopReason.ONE_CLASS: "One way to fly is right with {top:.1%} probability.",
     StopReason.GOOD_FOR_ALL: "One plan succeeds whatever the answers would be.",
-    StopReason.NO_GAIN: "No question that is left is worth asking (the best would tell {gain:.3f} bits).",
+    StopReason.NO_GAIN: "No question that is left is worth asking (the best has a gain of {gain:.3f} bits).",
     StopReason.BUDGET: "All {budget} questions that are allowed have been asked.",
     StopReason.SILENCE: "The operator does not answer.",
     StopReason.INFEASIBLE: "Nothing can be flown under anything that is still possible.",

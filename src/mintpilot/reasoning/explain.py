@@ -93,7 +93,7 @@ def _extremes(space: PlanSpace, given: Assumptions, gap: KnowledgeGap) -> tuple[
 
 
 def _worth(mint: Mint, regret_s: Floats, gap_id: str) -> tuple[float, float]:
-    """Bits that the best query 'gap = value' tells of the plan class, and seconds of regret that the value saves."""
+    """Gain, bits, of the best query 'gap = value', and seconds of regret that knowing the value saves."""
     if all(g.id != gap_id for g in mint.belief.gaps):
         return 0.0, 0.0
     axis, support = mint.belief.axis(gap_id), mint.support

@@ -28,7 +28,7 @@ class EntropyThresholdStrategy(Strategy):
         self._threshold_bits = threshold_bits
 
     def decide(self, situation: Situation) -> Decision:
-        """Asks the query that tells most of the most uncertain gap, or flies what loses least on average."""
+        """Asks the query with the highest gain on the most uncertain gap, or flies what loses least on average."""
         mint = tree_of(situation)
         if situation.silent:
             return fly_cautiously(situation, mint, StopReason.SILENCE)

@@ -36,7 +36,7 @@ class ExhaustiveStrategy(Strategy):
 
 
 def best_about(gap: KnowledgeGap, situation: Situation) -> ScoredQuery | None:
-    """The query about that gap alone that tells most of it; None where none may be asked or tells anything."""
+    """The query about that gap alone with the highest gain on it; None where none may be asked or has a gain."""
     queries = [Query(literals=(literal,)) for literal in gap_literals(gap, situation.problem.start_m)]
     answered = {one.query.id for one in situation.asked} if situation.settings.answer_error == 0 else set()
     found = []
@@ -51,7 +51,7 @@ def best_about(gap: KnowledgeGap, situation: Situation) -> ScoredQuery | None:
 
 
 def scored_alone(query: Query, gap: KnowledgeGap, situation: Situation) -> ScoredQuery:
-    """A query about one gap alone with the bits that its answer tells of that gap."""
+    """A query about one gap alone with its information gain on that gap."""
     error, count = situation.settings.answer_error, query.part_count
     parts = query.parts_over(((gap.id, gap.values),))
     shares = np.bincount(parts, weights=situation.belief.marginal(gap.id), minlength=count)

@@ -5,7 +5,7 @@ probability, so that the method is compared by *when* it asks, with the same kno
 nonconformity of the true class, one minus its probability, has the quantile q; the prediction set of a new world is
 every class of at least 1 - q, which holds the true one with the coverage that q was chosen for. One member: fly it.
 More: ask. The person there picks from the set; with yes/no questions only, the gaps that set the classes apart are
-asked about one by one, in order of their ids: the method has no notion of which answer tells most.
+asked about one by one, in order of their ids: the method has no notion of information gain.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ class KnowNoStrategy(Strategy):
         self._quantile = quantile
 
     def decide(self, situation: Situation) -> Decision:
-        """Asks about the first gap that tells the classes apart, or flies."""
+        """Asks about the first gap that is not known, or flies."""
         mint = tree_of(situation)
         if mint.root.leaf is LeafReason.INFEASIBLE:
             return fly(situation, mint, None, StopReason.INFEASIBLE)

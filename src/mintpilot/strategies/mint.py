@@ -1,4 +1,4 @@
-"""MINT: ask only what changes the plan, in the order that tells most (method, sections 3 to 6)."""
+"""MINT: ask only what changes the plan, by information gain (method, sections 3 to 6)."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ class MintStrategy(Strategy):
         3. The budget is spent, or no query is worth asking: fly the safe plan that loses least on average.
 
         A proposer (a language model), where there is one, is asked for queries only when the best of our own falls
-        short of what any query could tell (`mintpilot.strategies.proposals.with_proposals`); the best by score wins.
+        short of what any query could gain (`mintpilot.strategies.proposals.with_proposals`); the best by score wins.
         """
         mint = tree_of(situation)
         if mint.root.leaf is LeafReason.INFEASIBLE:

@@ -30,7 +30,7 @@ EXACT_CLASSES = 12
 def gain_bound_bits(situation: Situation, mint: Mint, regret_s: Floats, *, parts: int = 2) -> float:
     """What no query of that many parts can pass: log2 of them, or the entropy of the plan classes, less noise; bits.
 
-    A query tells most where each class answers it as one. With up to `EXACT_CLASSES` classes it is therefore known how
+    The gain is highest where each class answers as one. With up to `EXACT_CLASSES` classes it is therefore known how
     near to halves any yes/no query can come (of three equal classes: 0.92 bit), and the bound is that.
 
     Args:
@@ -52,8 +52,8 @@ def gain_bound_bits(situation: Situation, mint: Mint, regret_s: Floats, *, parts
             sums = np.concatenate([sums, sums + mass])
         share = float(sums[np.argmin(np.abs(sums - 0.5))])
     heard = (1 - error) * share + error * (1 - share)
-    told = entropy_bits((heard, 1 - heard)) - noise_bits(2, error)
-    return float(max(0.0, min(told, most)))
+    gain = entropy_bits((heard, 1 - heard)) - noise_bits(2, error)
+    return float(max(0.0, min(gain, most)))
 
 
 def with_proposals(
@@ -66,7 +66,7 @@ def with_proposals(
 ) -> tuple[tuple[ScoredQuery, ...], tuple[ScoredQuery, ...]]:
     """All queries, best first, and those among them that the proposer brought.
 
-    The proposer is asked only where the best own query tells less than the bound on gain, by more than `MARGIN_BITS`:
+    The proposer is asked only where the best own query falls short of the bound on gain by more than `MARGIN_BITS`:
     elsewhere nothing better exists, and no time is lost. All queries are then scored together by the same objective;
     the best by score wins, whoever proposed it.
     """

@@ -8,7 +8,7 @@ from mintpilot.strategies.mint import MintStrategy
 
 
 class RandomQueryStrategy(Strategy):
-    """MINT with queries drawn at random among those that tell something.
+    """MINT with queries drawn at random among those with information gain.
 
     Args:
         seed: of the draws. Same seed, same questions.

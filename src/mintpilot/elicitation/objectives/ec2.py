@@ -16,7 +16,7 @@ class Ec2(QueryObjective):
     Two joint hypotheses of different plan classes are joined by an edge that weighs the product of their probabilities
     (Golovin, Krause and Ray 2010). An answer discounts the hypotheses that disagree with it by the ratio of the
     probabilities of a wrong answer and of the right one, e / (1 - e) for a yes or no, instead of removing them, less
-    what an answer that tells nothing would discount (Chen, Hassani and Krause 2017).
+    what an answer without information would discount (Chen, Hassani and Krause 2017).
     """
 
     def scores(self, situation: QuerySituation) -> Floats:
@@ -35,7 +35,7 @@ class Ec2(QueryObjective):
 
     @staticmethod
     def _cut(masses: Floats, edges: float, situation: QuerySituation) -> Floats:
-        """Weight (q, r) that each answer cuts, beyond what it would cut if it told nothing."""
+        """Weight (q, r) that each answer cuts, beyond what an answer without information would cut."""
         error = situation.settings.answer_error
         discount = error / (1 - error) / (situation.part_count[:, None] - 1)
         highest = np.where(masses.sum(axis=2) > ROUNDING, 1.0, discount)

@@ -1,4 +1,4 @@
-"""The paper's objective: bits that the answer tells of the plan class."""
+"""The paper's objective: information gain on the plan class, bits."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from mintpilot.core.tolerances import TOLERANCE
 from mintpilot.elicitation.objectives.channel import class_masses, heard, plog2p
 
 FALLBACK = 1e-3
-"""Weight of gains about joint hypotheses where no query tells anything of the class by itself."""
+"""Weight of gains about joint hypotheses where no query has a gain on the class by itself."""
 
 
 class InformationGain(QueryObjective):
     """Mutual information of answer and plan class: H(T) - E[H(T | y)], bits (method, section 4).
 
-    Where classes differ but no single answer tells of them (one gap decides only together with another), queries are
-    ranked by a thousandth of what they tell of the joint hypothesis, so that asking goes on.
+    Where classes differ but no single query has a gain on them (one gap decides only together with another), queries
+    are ranked by a thousandth of their gain on the joint hypothesis, so that asking goes on.
     """
 
     def scores(self, situation: QuerySituation) -> Floats:

@@ -1,4 +1,4 @@
-"""A yardstick: any query that tells something, at random."""
+"""A yardstick: any query with information gain, at random."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from mintpilot.elicitation.objectives.information_gain import InformationGain
 
 
 class Random(QueryObjective):
-    """Ranks the queries that tell something of the plan class at random.
+    """Ranks the queries with information gain at random.
 
     Args:
         seed: of the draws. Same seed, same questions.
