@@ -18,8 +18,9 @@ HOW = (
     "touched, no toxic smoke, within the battery. *Possible*: a planner that is told the truth finds a plan. "
     "`passive-mixture`, beside the paper's Pure LLM, draws one of the two passive stances for each world and guesses "
     "by the prior whether to look into the room. `mint` is the regret rule with information gain, `mint-paper` the "
-    "paper's rule, `optimal` the regret rule with exact dynamic programming. In MuJoCo one survey flight for each world serves all methods. Cost: seconds "
-    "of flight + 10 s for each question + 600 s for a failure. Nothing was fitted to the paper."
+    "paper's rule, `optimal` the regret rule with exact dynamic programming. In MuJoCo one survey flight for each "
+    "world serves all methods. Cost: seconds of flight + 10 s for each question + 600 s for a failure. Nothing was "
+    "fitted to the paper."
 )
 
 

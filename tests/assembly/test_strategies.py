@@ -89,10 +89,9 @@ def test_arguments_of_the_command_line_are_read_as_what_they_look_like() -> None
             parse_arguments(wrong)
 
 
-def mission(tmp_path: Path, arguments: str) -> Path:
-    text, changed = re.subn(
-        r"^asking: \{", f"asking: {{strategy_arguments: {arguments}, ", BUILDING.read_text(), flags=re.M
-    )
+def mission(tmp_path: Path, arguments: str = "{}", more: str = "") -> Path:
+    given = f"asking: {{strategy_arguments: {arguments}, {more}"
+    text, changed = re.subn(r"^asking: \{", given, BUILDING.read_text(), flags=re.MULTILINE)
     assert changed == 1
     for name in BUILDING.parent.iterdir():
         if name != BUILDING:
