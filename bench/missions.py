@@ -11,14 +11,13 @@ from statistics import mean, median
 
 from bench.sections import Section, Table, keep
 from mintpilot.assembly.api import run_mission
-from mintpilot.assembly.crews import Choices, thinking_parts
+from mintpilot.assembly.components import Choices, deliberation_parts
 from mintpilot.assembly.worlds import World, build_world
 from mintpilot.cli.demos import demo_mission
 from mintpilot.core.errors import InfeasibleError
 from mintpilot.core.events import Asked, Deliberated, Event, FrameSeen, Timed
 from mintpilot.core.gap import Assumptions
-from mintpilot.mission.mind import Mind, think
-from mintpilot.reasoning.belief import prior_belief
+from mintpilot.mission.rehearsal import begin
 
 DEMOS = ("fire-warehouse", "medicine")
 
@@ -68,12 +67,9 @@ class Stopwatch:
 
 def omniscient_can(world: World) -> bool:
     """Whether a planner that is told the truth finds a plan, on the map of a perfect survey."""
-    thought_parts = thinking_parts(world, Choices())
-    start, endurance = world.mission.start_m, world.mission.limits.endurance_s
+    thought_parts = deliberation_parts(world, Choices())
     try:
-        thought = think(
-            Mind(map=world.map, belief=prior_belief(())), thought_parts, start_m=start, endurance_s=endurance
-        )
+        thought = begin(thought_parts, world.map).deliberated()
     except InfeasibleError:
         return False
     truths = {gap.id: world.truth.value_of(gap) for gap in thought.findings.gaps}

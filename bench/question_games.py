@@ -21,7 +21,7 @@ from mintpilot.core.ports import Ask, Fly, PlanSpace, Situation, Strategy
 from mintpilot.core.query import Query, answer_for
 from mintpilot.core.semantic_map import Cell, Region, SemanticMap
 from mintpilot.core.task import Action
-from mintpilot.mission.mind import Mind, learn
+from mintpilot.mission.belief_state import BeliefState, update
 from mintpilot.planning.task_planner import GridPlanner
 from mintpilot.reasoning.belief import prior_belief
 
@@ -78,14 +78,14 @@ def expectation(strategy: Strategy, situation: Situation) -> Expectation:
 
 def answered(situation: Situation, query: Query, part: int) -> Situation:
     """The situation after an answer that names that part of the query, by the update that missions use."""
-    before = Mind(
+    before = BeliefState(
         map=situation.problem.map,
         belief=situation.belief,
         confirmed=situation.confirmed,
         withdrawn=situation.withdrawn,
         asked=situation.asked,
     )
-    after = learn(before, query, answer_for(query, part), situation.settings).mind
+    after = update(before, query, answer_for(query, part), situation.settings).state
     return replace(
         situation, belief=after.belief, confirmed=after.confirmed, withdrawn=after.withdrawn, asked=after.asked
     )

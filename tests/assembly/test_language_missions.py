@@ -17,8 +17,9 @@ from mintpilot.assembly.api import run_mission
 from mintpilot.cli.demos import demo_path
 from mintpilot.core.events import Asked, Event
 from mintpilot.core.mission import Outcome
-from mintpilot.core.ports import BetterWords, Operator, Understand
+from mintpilot.core.ports import Understand
 from mintpilot.core.query import Answer, Question
+from mintpilot.interaction.scripted import FunctionOperator, ScriptedOperator
 from mintpilot.interaction.terminal import TerminalOperator
 from mintpilot.recording.record import read_record
 
@@ -40,15 +41,16 @@ def server(monkeypatch: pytest.MonkeyPatch) -> Iterator[LlmServer]:
     running.shut_down()
 
 
-class Listener(Operator):
+class Listener(FunctionOperator):
     """Knows what the scripted operator knows, and keeps what it was told."""
 
-    def __init__(self, knows: Operator) -> None:
+    def __init__(self, knows: ScriptedOperator) -> None:
+        super().__init__(self.ask)
         self._knows = knows
         self.told: list[str] = []
 
-    def ask(self, question: Question, patience_s: float, better: BetterWords | None = None) -> Answer:
-        return self._knows.ask(question, patience_s, better)
+    def ask(self, question: Question, patience_s: float) -> Answer:
+        return self._knows.answer(question, patience_s)
 
     def tell(self, text: str) -> None:
         self.told.append(text)
@@ -115,13 +117,14 @@ def test_a_server_that_was_never_there_costs_words_only(monkeypatch: pytest.Monk
     assert len([n for n in record.notices if n.kind == "language"]) == 1
 
 
-class Talker(Operator):
+class Talker(FunctionOperator):
     """Says in free words what it is told to say, one utterance a question."""
 
     def __init__(self, understand: Understand, *utterances: str) -> None:
+        super().__init__(self.ask)
         self._understand, self._utterances = understand, iter(utterances)
 
-    def ask(self, question: Question, patience_s: float, better: BetterWords | None = None) -> Answer:
+    def ask(self, question: Question, patience_s: float) -> Answer:
         text = next(self._utterances)
         meaning = self._understand(text, question, patience_s)
         assert meaning.reply is not None

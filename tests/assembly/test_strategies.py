@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from mintpilot.assembly.api import run_mission
-from mintpilot.assembly.crews import Choices, thinking_parts
+from mintpilot.assembly.components import Choices, deliberation_parts
 from mintpilot.assembly.registry import BUILT_IN
 from mintpilot.assembly.strategies import make_objective, make_strategy, parse_arguments, strategy_label
 from mintpilot.assembly.worlds import build_world
@@ -17,9 +17,8 @@ from mintpilot.cli.main import main
 from mintpilot.core.errors import InputError, UnknownNameError
 from mintpilot.core.mission import Outcome
 from mintpilot.core.tree import StopReason
-from mintpilot.mission.mind import Mind, think
+from mintpilot.mission.rehearsal import begin
 from mintpilot.mission_file.reader import read_mission
-from mintpilot.reasoning.belief import prior_belief
 from mintpilot.strategies.knowno import KnowNoStrategy
 
 BUILDING = Path(__file__).parents[2] / "examples" / "my-building" / "mission.yaml"
@@ -32,10 +31,8 @@ def test_every_strategy_is_made_with_any_seed(name: str) -> None:
 
 def flown(name: str, seed: int) -> str:
     world = build_world(read_mission(BUILDING), base=BUILDING.parent, seed=seed)
-    parts = thinking_parts(world, Choices(strategy=name))
-    start, endurance = world.mission.start_m, world.mission.limits.endurance_s
-    mind = Mind(map=world.map, belief=prior_belief(()))
-    decision = think(mind, parts, start_m=start, endurance_s=endurance).decision
+    parts = deliberation_parts(world, Choices(strategy=name))
+    decision = begin(parts, world.map).deliberated().decision
     plan = getattr(decision, "plan", None)
     return plan.signature if plan else ""
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from tests.benchmark.small import experiment
 
-from mintpilot.assembly.crews import Choices, thinking_parts
+from mintpilot.assembly.components import Choices, deliberation_parts
 from mintpilot.assembly.strategies import make_strategy
 from mintpilot.benchmark.calibration import FIRST_SEED, calibrate, committed, nonconformity, quantile
 from mintpilot.benchmark.conditions import asking_for, believed_world, misplaced, true_world
@@ -19,8 +19,7 @@ from mintpilot.benchmark.omniscient import survey_world
 from mintpilot.benchmark.warm import WarmPlanner
 from mintpilot.core.gap import Assumptions
 from mintpilot.core.mission import CriticalityRule
-from mintpilot.mission.mind import Mind, think
-from mintpilot.reasoning.belief import prior_belief
+from mintpilot.mission.rehearsal import begin
 
 WAREHOUSE = Cell(scenario="fire-warehouse", methods=())
 
@@ -66,18 +65,11 @@ def test_methods_get_their_settings_and_only_told_ones() -> None:
 
 def test_the_mixture_takes_both_stances_over_the_trials() -> None:
     world = true_world(WAREHOUSE, 2)
-    parts = thinking_parts(world, Choices())
-    mind = Mind(map=world.map, belief=prior_belief(()))
+    parts = deliberation_parts(world, Choices())
     decisions = []
     for seed in range(12):
         strategy = make_strategy(method_of("passive-mixture").strategy, seed=seed)
-        mission = world.mission
-        thought = think(
-            mind,
-            replace(parts, strategy=strategy),
-            start_m=mission.start_m,
-            endurance_s=mission.limits.endurance_s,
-        )
+        thought = begin(replace(parts, strategy=strategy), world.map).deliberated()
         plan = thought.decision.plan
         decisions.append(plan.signature if plan else "")
     assert len(set(decisions)) > 1
@@ -87,13 +79,8 @@ def test_the_mixture_takes_both_stances_over_the_trials() -> None:
 def test_a_gap_mattered_exactly_when_flipping_the_truth_changes_the_best_mission(seed: int) -> None:
     world = true_world(WAREHOUSE, seed)
     record = survey_world(world, experiment="table1", cell="")
-    parts = thinking_parts(world, Choices())
-    thought = think(
-        Mind(map=world.map, belief=prior_belief(())),
-        parts,
-        start_m=world.mission.start_m,
-        endurance_s=world.mission.limits.endurance_s,
-    )
+    parts = deliberation_parts(world, Choices())
+    thought = begin(parts, world.map).deliberated()
     truth = {gap.id: gap.truth for gap in record.gaps if gap.truth}
     best = thought.situation.space.optimistic(Assumptions.exactly(truth))
     assert record.possible == (best is not None)
@@ -108,13 +95,8 @@ def test_a_gap_mattered_exactly_when_flipping_the_truth_changes_the_best_mission
 
 def test_shared_plans_are_the_plans_of_a_fresh_planner() -> None:
     world = true_world(WAREHOUSE, 3)
-    parts = thinking_parts(world, Choices())
-    problem = think(
-        Mind(map=world.map, belief=prior_belief(())),
-        parts,
-        start_m=world.mission.start_m,
-        endurance_s=world.mission.limits.endurance_s,
-    ).situation.problem
+    parts = deliberation_parts(world, Choices())
+    problem = begin(parts, world.map).deliberated().situation.problem
     warm = WarmPlanner(parts.planner)
     space = warm.open(problem)
     assert warm.open(problem) is space

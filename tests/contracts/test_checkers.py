@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from dataclasses import replace
 
 import numpy as np
@@ -22,6 +23,7 @@ from mintpilot.conformance import (
 from mintpilot.conformance.sample import sample_world
 from mintpilot.core.errors import ConformanceError
 from mintpilot.core.geometry import Box
+from mintpilot.core.inputs import Answered
 from mintpilot.core.observation import Detection
 from mintpilot.core.ports import Ask, Completion, Fly
 from mintpilot.core.query import Answer, Reply
@@ -107,30 +109,52 @@ def test_a_planner():
         check_planner(Blind)
 
 
-class Rude:
+class Quiet:
+    attended = False
+
+    def show(self, question, patience_s):
+        self.question = question
+
+    def withdraw(self, question, why):
+        self.question = None
+
     def tell(self, text):
         pass
 
-    def ask(self, question, patience_s):
-        return Answer(reply=Reply.YES, latency_s=float("nan"))
+    def poll(self, time_s):
+        return ()
 
 
-def test_an_operator():
-    with pytest.raises(ConformanceError, match="latency_s"):
-        check_operator(Rude)
+class Rude(Quiet):
+    question = None
+
+    def poll(self, time_s):
+        if self.question is None:
+            return ()
+        answer = Answer(reply=Reply.YES, latency_s=float("nan"))
+        answered = Answered(time_s=time_s, question=self.question.id, answer=answer)
+        self.question = None
+        return (answered,)
 
 
-class OldFashioned:
-    def tell(self, text):
-        pass
-
-    def ask(self, question, patience_s):
-        return Answer(reply=Reply.YES, latency_s=0.0)
+class Slow(Quiet):
+    def poll(self, time_s):
+        time.sleep(0.6)
+        return ()
 
 
-def test_an_operator_who_is_never_told_better_words():
-    with pytest.raises(ConformanceError, match="optionally, `better`"):
-        check_operator(OldFashioned)
+class Chatty(Rude):
+    def poll(self, time_s):
+        said = super().poll(time_s)
+        return (replace(said[0], answer=Answer(reply=Reply.NO, latency_s=0.0)), *said) if said else ()
+
+
+@pytest.mark.parametrize(
+    ("operator", "said"), [(Rude, "latency_s"), (Slow, "no method may block"), (Chatty, "2 answers")]
+)
+def test_an_operator(operator, said):
+    with pytest.raises(ConformanceError, match=said):
+        check_operator(operator)
 
 
 class Stubborn:
@@ -176,14 +200,20 @@ def test_a_perception(perception, said):
 
 
 class Deaf(KinematicSimulator):
-    def follow(self, trajectory, watch=None):
-        return super().follow(trajectory)
+    def brake(self):
+        pass
 
 
-def test_a_vehicle():
+class Hasty(KinematicSimulator):
+    def advance(self, until_s):
+        return super().advance(until_s + 2.0)
+
+
+@pytest.mark.parametrize(("vehicle", "said"), [(Deaf, "told to brake"), (Hasty, "it went on|ended in half")])
+def test_a_vehicle(vehicle, said):
     world = sample_world()
-    with pytest.raises(ConformanceError, match="the watch was never called"):
-        check_vehicle(lambda: Deaf(world.scene, world.rules, seed=0))
+    with pytest.raises(ConformanceError, match=said):
+        check_vehicle(lambda: vehicle(world.scene, world.rules, seed=0))
 
 
 class Fussy:

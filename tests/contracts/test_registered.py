@@ -75,7 +75,8 @@ def test_the_run_folder_is_a_recorder(tmp_path):
 def test_the_terminal_is_an_operator(tmp_path, talk):
     (tmp_path / "talk").write_text(talk)
     with (tmp_path / "talk").open() as typed:
-        make = partial(TerminalOperator, Console(file=io.StringIO()), typed, understand=Talk().understand)
+        words = {"understand": Talk().understand, "order_of": Talk().order_of}
+        make = partial(TerminalOperator, Console(file=io.StringIO()), typed, **words)
         check_operator(make, patience_s=0.2)
 
 

@@ -10,7 +10,7 @@ from mintpilot.assembly.registry import load
 from mintpilot.core.mission import AskingSettings
 from mintpilot.core.ports import Ask, Fly, QueryObjective, Situation, Strategy
 from mintpilot.core.query import Answer, Query, Reply, answer_for
-from mintpilot.mission.mind import Mind, learn
+from mintpilot.mission.belief_state import BeliefState, update
 from mintpilot.reasoning.belief import prior_belief
 from oracles.worlds import BruteForce, World
 
@@ -62,7 +62,7 @@ def told(situation: Situation, query: Query, answer: Answer | Reply, attempts: t
         answer: what came back; a bare reply takes no time.
         attempts: ids of the queries that were put before.
     """
-    before = Mind(
+    before = BeliefState(
         map=situation.problem.map,
         belief=situation.belief,
         confirmed=situation.confirmed,
@@ -72,7 +72,7 @@ def told(situation: Situation, query: Query, answer: Answer | Reply, attempts: t
         silent=situation.silent,
     )
     given = Answer(reply=answer, latency_s=0.0) if isinstance(answer, Reply) else answer
-    after = learn(before, query, given, situation.settings).mind
+    after = update(before, query, given, situation.settings).state
     return replace(
         situation,
         belief=after.belief,

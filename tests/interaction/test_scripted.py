@@ -8,11 +8,12 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tests.driving import ask as put
 
 from mintpilot.core.errors import InputError
 from mintpilot.core.gap import GapKind, KnowledgeGap
-from mintpilot.core.ports import SPEAKING_S
-from mintpilot.core.query import Answer, Combine, Literal, Query, Question, Reply, Saying, SayingKind
+from mintpilot.core.inputs import Ordered, QuestionShown
+from mintpilot.core.query import Answer, Combine, Literal, Order, Query, Question, Reply, Saying, SayingKind
 from mintpilot.interaction.scripted import FunctionOperator, RecordedOperator, ScriptedOperator
 
 
@@ -42,7 +43,7 @@ class Truth:
 
 def ask(asked: Question, **options) -> Answer:
     rng = np.random.default_rng(0)
-    return ScriptedOperator(Truth(x="a", y="b"), rng=rng, **options).ask(asked, 10.0)
+    return put(ScriptedOperator(Truth(x="a", y="b"), rng=rng, **options), asked, 10.0)
 
 
 def test_the_truth_is_told():
@@ -79,13 +80,13 @@ def test_doubt_does_not_change_who_errs(seed, unsure):
     plain = ScriptedOperator(Truth(x="a"), rng=np.random.default_rng(seed), answer_error=0.3)
     doubting = ScriptedOperator(Truth(x="a"), rng=np.random.default_rng(seed), answer_error=0.3, unsure_rate=unsure)
     for _ in range(30):
-        sure, maybe = plain.ask(asked, 9).reply, doubting.ask(asked, 9).reply
+        sure, maybe = put(plain, asked, 9).reply, put(doubting, asked, 9).reply
         assert maybe in (sure, Reply.UNSURE)
 
 
 def test_errors_come_at_their_rate():
     operator = ScriptedOperator(Truth(x="a"), rng=np.random.default_rng(1), answer_error=0.1)
-    wrong = sum(operator.ask(question(("x", {"a"})), 9).reply is Reply.NO for _ in range(5000))
+    wrong = sum(put(operator, question(("x", {"a"})), 9).reply is Reply.NO for _ in range(5000))
     assert 400 < wrong < 600
 
 
@@ -105,43 +106,44 @@ def test_recorded_answers_come_in_order_then_silence():
     operator = RecordedOperator([Reply.YES, slow])
     asked = question(("x", {"a"}))
     operator.tell("hello")
-    answers = [operator.ask(asked, 5.0) for _ in range(3)]
+    answers = [put(operator, asked, 8.0 if n == 1 else 5.0) for n in range(3)]
     assert [a.reply for a in answers] == [Reply.YES, Reply.NO, Reply.TIMEOUT]
     assert [a.latency_s for a in answers] == [0.0, 7.0, 5.0]
-    assert operator.questions == [asked] * 3
+    assert [q.text for q in operator.questions] == [asked.text] * 3
     assert operator.told == ["hello"]
 
 
-class Words:
-    """Better words, or none, and how long they were waited for."""
-
-    done = True
-
-    def __init__(self, words: Question | None) -> None:
-        self.words, self.waited_s = words, 0.0
-
-    def wait(self, timeout_s: float) -> Question | None:
-        self.waited_s = timeout_s
-        return self.words
-
-
-@pytest.mark.parametrize("has_words", [True, False])
-def test_who_hears_the_question_hears_the_better_words_if_they_come_in_time(has_words):
+def test_an_answer_takes_its_time_and_better_words_change_nothing():
     asked = question(("x", {"a"}))
-    words = Words(replace(asked, text="Better?") if has_words else None)
-    heard: list[str] = []
-    scripted = ScriptedOperator(Truth(x="a"), rng=np.random.default_rng(0))
-    recorded = RecordedOperator([Reply.YES])
-    function = FunctionOperator(lambda asked, patience_s: heard.append(asked.text) or Reply.YES)
-    for operator in (scripted, recorded, function):
-        answer = operator.ask(asked, 10.0, words)
-        assert answer.reply is Reply.YES
-        assert (answer.better_s is not None) is has_words
-        assert words.waited_s == SPEAKING_S
-    assert [q.text for q in recorded.questions] == heard == ["Better?" if has_words else "?"]
+    operator = ScriptedOperator(Truth(x="a"), rng=np.random.default_rng(0), latency_s=2.0)
+    operator.show(replace(asked, id="q1"), 10.0)
+    shown = operator.poll(5.0)
+    assert [type(event) for event in shown] == [QuestionShown]
+    operator.show(replace(asked, id="q1", text="Better?"), 9.0)
+    assert operator.poll(6.9) == ()
+    (answered,) = operator.poll(7.5)
+    assert (answered.time_s, answered.question, answered.answer.reply) == (7.0, "q1", Reply.YES)
+    assert operator.poll(20.0) == ()
+
+
+def test_what_is_withdrawn_is_not_answered():
+    operator = ScriptedOperator(Truth(x="a"), rng=np.random.default_rng(0), latency_s=2.0)
+    operator.show(replace(question(("x", {"a"})), id="q1"), 10.0)
+    operator.poll(0.0)
+    operator.withdraw("q1", "nobody needs to know any more")
+    assert operator.poll(5.0) == ()
+
+
+def test_recorded_orders_come_when_their_time_has_come_and_instead_of_answers():
+    operator = RecordedOperator([Order.LAND], orders=[(1.0, Order.HOLD), (3.0, Order.CONTINUE)])
+    assert operator.poll(0.5) == ()
+    assert [event.order for event in operator.poll(1.0)] == [Order.HOLD]
+    operator.show(replace(question(("x", {"a"})), id="q1"), 10.0)
+    orders = [event.order for event in operator.poll(3.5) if isinstance(event, Ordered)]
+    assert orders == [Order.CONTINUE, Order.LAND]
 
 
 def test_a_function_answers():
     operator = FunctionOperator(lambda asked, patience_s: Reply.YES if patience_s > 3 else Reply.UNSURE)
-    assert operator.ask(question(("x", {"a"})), 5).reply is Reply.YES
-    assert operator.ask(question(("x", {"a"})), 2).reply is Reply.UNSURE
+    assert put(operator, question(("x", {"a"})), 5).reply is Reply.YES
+    assert put(operator, question(("x", {"a"})), 2).reply is Reply.UNSURE

@@ -17,11 +17,12 @@ from pathlib import Path
 
 import pytest
 from rich.console import Console
+from tests.driving import ask as put
 from tests.language.questions import BOX
 
 from mintpilot.assembly.talk import Talk
 from mintpilot.core.errors import DeviceError, InputError
-from mintpilot.core.query import YES_PART, Command, Question, Reply
+from mintpilot.core.query import YES_PART, Order, Question, Reply
 from mintpilot.interaction.screen_words import screen_words
 from mintpilot.interaction.terminal import TerminalOperator
 
@@ -62,7 +63,9 @@ def pipe() -> Iterator[Pipe]:
 
 def operator(pipe: Pipe) -> tuple[TerminalOperator, io.StringIO]:
     shown = io.StringIO()
-    return TerminalOperator(Console(file=shown, width=100), pipe, understand=Talk().understand), shown
+    return TerminalOperator(
+        Console(file=shown, width=100), pipe, understand=Talk().understand, order_of=Talk().order_of
+    ), shown
 
 
 @pytest.mark.parametrize(
@@ -73,9 +76,8 @@ def operator(pipe: Pipe) -> tuple[TerminalOperator, io.StringIO]:
 def test_replies(pipe, typed, reply):
     asked, shown = operator(pipe)
     pipe.say(typed + b"\n")
-    answer = asked.ask(ASKED, 5.0)
+    answer = put(asked, ASKED, 5.0, real=True)
     assert answer.reply is reply
-    assert answer.command is None
     assert 0 <= answer.latency_s < 5
     text = shown.getvalue()
     assert "I fly through it" in text
@@ -85,27 +87,26 @@ def test_replies(pipe, typed, reply):
 
 @pytest.mark.parametrize(
     ("typed", "command"),
-    [(b"stop", Command.HOLD), (b"HOLD!", Command.HOLD), (b"abort", Command.ABORT), (b"return", Command.RETURN)],
+    [(b"stop", Order.HOLD), (b"HOLD!", Order.HOLD), (b"abort", Order.ABORT), (b"return", Order.RETURN)],
 )
 def test_orders_are_obeyed_at_once(pipe, typed, command):
     asked, _ = operator(pipe)
     pipe.say(typed + b"\n")
-    answer = asked.ask(ASKED, 5.0)
-    assert answer.command is command
-    assert answer.reply is not Reply.YES
+    answer = put(asked, ASKED, 5.0, real=True)
+    assert answer is command
 
 
 def test_what_is_not_understood_is_asked_for_again(pipe):
     asked, shown = operator(pipe)
     pipe.say(b"\xff\xfe\x00\n\n\nyes\n")
-    assert asked.ask(ASKED, 5.0).reply is Reply.YES
+    assert put(asked, ASKED, 5.0, real=True).reply is Reply.YES
     assert shown.getvalue().count("Please say yes, no") == 1
 
 
 def test_but_only_once(pipe):
     asked, shown = operator(pipe)
     pipe.say(b"yesno\nbananas\nyes\n")
-    answer = asked.ask(ASKED, 5.0)
+    answer = put(asked, ASKED, 5.0, real=True)
     assert (answer.reply, answer.text) == (Reply.UNSURE, "bananas")
     assert shown.getvalue().count("Please say yes, no") == 1
 
@@ -113,7 +114,7 @@ def test_but_only_once(pipe):
 def test_what_is_understood_goes_with_the_answer(pipe):
     asked, _ = operator(pipe)
     pipe.say(b"Not the red one, the blue one\n")
-    answer = asked.ask(BOX, 5.0)
+    answer = put(asked, BOX, 5.0, real=True)
     assert (answer.reply, answer.understood_by) == (Reply.NO, "rules")
     assert [(x.query.literals[0].values, x.part) for x in answer.also] == [(frozenset({"box-2", "box-3"}), YES_PART)]
 
@@ -121,11 +122,12 @@ def test_what_is_understood_goes_with_the_answer(pipe):
 class Later:
     """Better words that come when the test says so."""
 
-    def __init__(self, words: Question | None = None) -> None:
-        self.words, self.done = words, words is not None
+    def __init__(self) -> None:
+        self.words: Question | None = None
 
-    def wait(self, timeout_s: float) -> Question | None:
-        return self.words
+    def __call__(self, waited_s: float) -> Question | None:
+        words, self.words = self.words, None
+        return words
 
 
 def test_better_words_are_shown_below_the_first_ones_with_the_consequences(pipe):
@@ -133,61 +135,74 @@ def test_better_words_are_shown_below_the_first_ones_with_the_consequences(pipe)
     later = Later()
 
     def come() -> None:
-        later.words, later.done = replace(ASKED, text="Is the smoke safe?\x1b[2J"), True
+        later.words = replace(ASKED, text="Is the smoke safe?\x1b[2J")
         threading.Timer(0.3, pipe.say, [b"y\n"]).start()
 
     threading.Timer(0.2, come).start()
-    answer = asked.ask(ASKED, 20.0, later)
+    answer = put(asked, ASKED, 20.0, better=later, real=True)
     first, _, second = shown.getvalue().partition("The same in other words:")
     assert "Can I fly through" in first
     assert "Your answer" in first
     for words in ("Is the smoke safe? [2J", "→ I fly through it", "→ I fly around it", "Your answer"):
         assert words in second
     assert answer.reply is Reply.YES
-    assert answer.better_s is not None
-    assert 0.1 < answer.better_s < answer.latency_s
 
 
 def test_who_answers_before_the_better_words_come_is_heard_at_once(pipe):
     asked, shown = operator(pipe)
     pipe.say(b"n\n")
-    answer = asked.ask(ASKED, 20.0, Later())
-    assert (answer.reply, answer.better_s) == (Reply.NO, None)
+    answer = put(asked, ASKED, 20.0, better=Later(), real=True)
+    assert answer.reply is Reply.NO
     assert "other words" not in shown.getvalue()
 
 
 @pytest.mark.parametrize(("lang", "yes"), [("de", "ja"), ("fr", "oui"), ("es", "sí"), ("en", "y")])
 def test_the_screen_speaks_the_operators_language_and_hears_what_it_offers(pipe, lang, yes):
     shown, words = io.StringIO(), screen_words(lang)
-    asked = TerminalOperator(Console(file=shown, width=200), pipe, understand=Talk(lang=lang).understand, lang=lang)
+    talk = Talk(lang=lang)
+    console = Console(file=shown, width=200)
+    asked = TerminalOperator(console, pipe, understand=talk.understand, order_of=talk.order_of, lang=lang)
     for key, reply in ((yes, Reply.YES), (words.no.split()[0], Reply.NO), ("?", Reply.UNSURE)):
         pipe.say(f"xyzzy\n{key}\n".encode())
-        assert asked.ask(ASKED, 5.0).reply is reply
+        assert put(asked, ASKED, 5.0, real=True).reply is reply
     for offered in words.orders.partition(":")[2].partition(".")[0].split(","):
         pipe.say(f"{offered.strip()}\n".encode())
-        assert asked.ask(ASKED, 5.0).command is not None
+        assert isinstance(put(asked, ASKED, 5.0, real=True), Order)
     for fixed in (words.asks, words.repeat, words.unsure_means, words.prompt):
         assert fixed in shown.getvalue()
 
 
 def test_a_language_that_nobody_speaks_is_refused(pipe):
     with pytest.raises(InputError, match="unknown language 'dee'"):
-        TerminalOperator(Console(file=io.StringIO()), pipe, understand=Talk().understand, lang="dee")
+        TerminalOperator(
+            Console(file=io.StringIO()), pipe, understand=Talk().understand, order_of=Talk().order_of, lang="dee"
+        )
 
 
-def test_no_better_words_are_not_shown(pipe):
+def test_orders_are_heard_while_nothing_is_asked_and_other_lines_are_not(pipe):
     asked, shown = operator(pipe)
-    later = Later()
-    later.done = True
-    threading.Timer(0.2, pipe.say, [b"y\n"]).start()
-    assert asked.ask(ASKED, 20.0, later).better_s is None
-    assert "other words" not in shown.getvalue()
+    pipe.say(b"yes\nhold\n\ncontinue\n")
+    orders = [event.order for event in asked.poll(4.0)]
+    assert orders == [Order.HOLD, Order.CONTINUE]
+    assert "Nothing is asked now" in shown.getvalue()
+    assert asked.poll(5.0) == ()
+
+
+def test_a_question_that_was_answered_elsewhere_is_withdrawn(pipe):
+    asked, shown = operator(pipe)
+    asked.show(replace(ASKED, id="q1"), 5.0)
+    assert [type(event).__name__ for event in asked.poll(0.0)] == ["QuestionShown"]
+    asked.withdraw("q0", "another one")
+    asked.withdraw("q1", "it was answered")
+    assert shown.getvalue().count("it was answered") == 1
+    pipe.say(b"y\n")
+    assert asked.poll(1.0) == ()
 
 
 def test_garbage_alone_ends_in_silence(pipe):
     asked, _ = operator(pipe)
     pipe.say(b"hm hm hm\n")
-    answer = asked.ask(ASKED, 0.2)
+    answer = put(asked, ASKED, 0.2, real=True)
     assert answer.reply is Reply.TIMEOUT
     assert answer.latency_s >= 0.2
 
@@ -195,22 +210,22 @@ def test_garbage_alone_ends_in_silence(pipe):
 def test_silence_ends_and_half_a_word_is_no_answer_to_the_next_question(pipe):
     asked, _ = operator(pipe)
     pipe.say(b"ye")
-    assert asked.ask(ASKED, 0.1).reply is Reply.TIMEOUT
+    assert put(asked, ASKED, 0.1, real=True).reply is Reply.TIMEOUT
     pipe.say(b"s\n")
-    assert asked.ask(ASKED, 0.1).reply is Reply.TIMEOUT
+    assert put(asked, ASKED, 0.1, real=True).reply is Reply.TIMEOUT
 
 
 def test_an_endless_line_is_not_kept(pipe):
     asked, _ = operator(pipe)
     pipe.say(b"y" * 60_000 + b"\n")
-    assert asked.ask(ASKED, 0.5).reply is Reply.TIMEOUT
+    assert put(asked, ASKED, 0.5, real=True).reply is Reply.TIMEOUT
 
 
 def test_lines_of_a_pipe_answer_one_question_each_and_its_end_is_silence(pipe):
     asked, _ = operator(pipe)
     pipe.say(b"y\nn\n?")
     pipe.end()
-    replies = [asked.ask(ASKED, 30.0).reply for _ in range(5)]
+    replies = [put(asked, ASKED, 30.0, real=True).reply for _ in range(5)]
     assert replies == [Reply.YES, Reply.NO, Reply.UNSURE, Reply.TIMEOUT, Reply.TIMEOUT]
 
 
@@ -222,21 +237,24 @@ def test_messages_are_shown_without_control_codes(pipe):
 
 def test_a_closed_input_is_refused():
     with pytest.raises(DeviceError, match="scripted operator"):
-        TerminalOperator(Console(file=io.StringIO()), io.StringIO(), understand=Talk().understand)
+        TerminalOperator(
+            Console(file=io.StringIO()), io.StringIO(), understand=Talk().understand, order_of=Talk().order_of
+        )
 
 
 CHILD = f"""
 import sys
 sys.path.insert(0, {str(ROOT)!r})
 from rich.console import Console
+from tests.driving import ask as put
 from tests.interaction.test_terminal import ASKED
 from mintpilot.assembly.talk import Talk
 from mintpilot.interaction.terminal import TerminalOperator
-asked = TerminalOperator(Console(), sys.stdin, understand=Talk().understand)
+asked = TerminalOperator(Console(), sys.stdin, understand=Talk().understand, order_of=Talk().order_of)
 print("ready", flush=True)
 try:
     for _ in range(2):
-        print("got", asked.ask(ASKED, 20.0).reply.value, flush=True)
+        print("got", put(asked, ASKED, 5.0, real=True).reply.value, flush=True)
 except KeyboardInterrupt:
     print("interrupted", flush=True)
 """
@@ -300,7 +318,7 @@ def test_ctrl_d_at_a_terminal_is_silence(terminal):
 def test_an_answer_that_comes_late_is_waited_for(pipe):
     asked, _ = operator(pipe)
     threading.Timer(0.15, pipe.say, [b"no\n"]).start()
-    answer = asked.ask(ASKED, 10.0)
+    answer = put(asked, ASKED, 10.0, real=True)
     assert answer.reply is Reply.NO
     assert answer.latency_s >= 0.1
 

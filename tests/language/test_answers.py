@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from mintpilot.benchmark.language_cases import QUESTIONS, AnswerCase, answer_cases
 from mintpilot.core.gap import ABSENT, BLOCKED, PASSABLE
-from mintpilot.core.query import Command, Literal, Query, Question, Reply, Saying, SayingKind
+from mintpilot.core.query import Literal, Order, Query, Question, Reply, Saying, SayingKind
 from mintpilot.language import Reading, understand_answer
 
 from . import questions
@@ -101,17 +101,17 @@ def test_what_is_said_beyond_the_question_is_kept(text: str, left: set[str]) -> 
 @pytest.mark.parametrize(
     ("text", "command"),
     [
-        ("stop", Command.HOLD),
-        ("hold position!", Command.HOLD),
-        ("abort", Command.ABORT),
-        ("cancel the mission", Command.ABORT),
-        ("come back", Command.RETURN),
-        ("stop and come back", Command.RETURN),
-        ("return to base immediately", Command.RETURN),
-        ("that is enough, land it now", Command.ABORT),
+        ("stop", Order.HOLD),
+        ("hold position!", Order.HOLD),
+        ("abort", Order.ABORT),
+        ("cancel the mission", Order.ABORT),
+        ("come back", Order.RETURN),
+        ("stop and come back", Order.RETURN),
+        ("return to base immediately", Order.RETURN),
+        ("that is enough, land it now", Order.ABORT),
     ],
 )
-def test_orders_come_before_answers(text: str, command: Command) -> None:
+def test_orders_come_before_answers(text: str, command: Order) -> None:
     understood = understand_answer(text, questions.SMOKE)
     assert (understood.reading, understood.command) == (Reading.COMMAND, command)
 

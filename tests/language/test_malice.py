@@ -10,16 +10,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mintpilot.assembly.crews import Choices, VehicleChoice, crew_for, scripted_operator
+from mintpilot.assembly.components import Choices, VehicleChoice, components_for, scripted_operator
 from mintpilot.assembly.worlds import build_world
 from mintpilot.cli.demos import demo_mission
 from mintpilot.core.events import Asked, Event, LegFlown, MissionEnded
 from mintpilot.core.gap import GapKind
 from mintpilot.core.mission import Outcome
-from mintpilot.core.ports import BetterWords, Operator, Recorder
+from mintpilot.core.ports import Recorder
 from mintpilot.core.query import Answer, Question, Reply
 from mintpilot.core.semantic_map import SemanticMap
 from mintpilot.elicitation.wording import word_question
+from mintpilot.interaction.scripted import FunctionOperator, ScriptedOperator
 from mintpilot.language.doubles import FunctionModel
 from mintpilot.language.wording import ModelWording
 from mintpilot.mission.loop import fly_mission
@@ -63,14 +64,15 @@ class Witness(Recorder):
         self.events.append(event)
 
 
-class Literal(Operator):
+class Literal(FunctionOperator):
     """Knows the truth and answers the words that it hears: words that ask for the opposite get the opposite answer."""
 
-    def __init__(self, knows: Operator) -> None:
+    def __init__(self, knows: ScriptedOperator) -> None:
+        super().__init__(self.ask)
         self._knows = knows
 
-    def ask(self, question: Question, patience_s: float, better: BetterWords | None = None) -> Answer:
-        answer = self._knows.ask(question, patience_s, better)
+    def ask(self, question: Question, patience_s: float) -> Answer:
+        answer = self._knows.answer(question, patience_s)
         turned = any(word in question.text.lower().split() for word in TURNED)
         flip = {Reply.YES: Reply.NO, Reply.NO: Reply.YES}
         return replace(answer, reply=flip.get(answer.reply, answer.reply)) if turned else answer
@@ -98,8 +100,10 @@ def test_no_model_makes_a_mission_less_safe(name: str) -> None:
     witness, model = Witness(), FunctionModel(MODELS[name])
     operator = Literal(scripted_operator(world, file.operator))
     wording = ModelWording(template=word_question, model=model)
-    with crew_for(world, Choices(vehicle=VehicleChoice.KINEMATIC), operator=operator, recorder=witness) as crew:
-        verdict = fly_mission(replace(crew, word=wording))
+    with components_for(
+        world, Choices(vehicle=VehicleChoice.KINEMATIC), operators=(operator,), recorder=witness
+    ) as made:
+        verdict = fly_mission(replace(made, parts=replace(made.parts, word=wording)))
     asked = [event for event in witness.events if isinstance(event, Asked)]
     allowed = {
         gap.subject

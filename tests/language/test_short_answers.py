@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from mintpilot.core.query import Command
+from mintpilot.core.query import Order
 from mintpilot.language.answers import Reading
 from mintpilot.language.short_answers import understand_in
 
@@ -43,18 +43,18 @@ def test_plain_answers_are_understood(language: str, text: str, reading: str) ->
 @pytest.mark.parametrize(
     ("language", "text", "command"),
     [
-        ("de", "Stopp!", Command.HOLD),
-        ("de", "komm sofort zurück", Command.RETURN),
-        ("de", "abbrechen", Command.ABORT),
-        ("fr", "arrête", Command.HOLD),
-        ("fr", "reviens tout de suite", Command.RETURN),
-        ("fr", "annule la mission", Command.ABORT),
-        ("es", "alto", Command.HOLD),
-        ("es", "vuelve ahora", Command.RETURN),
-        ("es", "aborta", Command.ABORT),
-        ("es", "stop", Command.HOLD),
+        ("de", "Stopp!", Order.HOLD),
+        ("de", "komm sofort zurück", Order.RETURN),
+        ("de", "abbrechen", Order.ABORT),
+        ("fr", "arrête", Order.HOLD),
+        ("fr", "reviens tout de suite", Order.RETURN),
+        ("fr", "annule la mission", Order.ABORT),
+        ("es", "alto", Order.HOLD),
+        ("es", "vuelve ahora", Order.RETURN),
+        ("es", "aborta", Order.ABORT),
+        ("es", "stop", Order.HOLD),
     ],
 )
-def test_orders_are_heard(language: str, text: str, command: Command) -> None:
+def test_orders_are_heard(language: str, text: str, command: Order) -> None:
     understood = understand_in(text, questions.SMOKE, language)
     assert (understood.reading, understood.command) == (Reading.COMMAND, command)

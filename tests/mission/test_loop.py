@@ -7,11 +7,12 @@ import pytest
 from tests.mission.scenes import hall, wall
 
 from mintpilot.assembly.api import run_mission
-from mintpilot.assembly.crews import Choices, crew_for
+from mintpilot.assembly.components import Choices, components_for
 from mintpilot.assembly.worlds import build_world
 from mintpilot.core.events import Event, LegFlown, PlanChosen
 from mintpilot.core.mission import Outcome
-from mintpilot.core.query import Answer, Command, Reply
+from mintpilot.core.query import Answer, Order, Reply
+from mintpilot.core.trajectory import FlightEnd
 from mintpilot.core.tree import StopReason
 from mintpilot.interaction.scripted import FunctionOperator, RecordedOperator
 from mintpilot.mission.loop import fly_mission
@@ -55,13 +56,85 @@ def test_silence_without_a_cautious_way_stays_safe() -> None:
     assert not enters_cloud(path)
 
 
-@pytest.mark.parametrize("command", [Command.ABORT, Command.HOLD, Command.RETURN])
-def test_orders_are_obeyed_at_once(command: Command) -> None:
-    operator = RecordedOperator([Answer(reply=Reply.UNSURE, latency_s=1.0, text="stop", command=command)])
+@pytest.mark.parametrize("order", [Order.ABORT, Order.LAND, Order.RETURN])
+def test_an_order_instead_of_an_answer_is_obeyed_at_once(order: Order) -> None:
+    operator = RecordedOperator([order])
     record, path, _ = fly(hall(), operator)
     assert record.outcome is Outcome.ABORTED
     assert len(operator.questions) == 1
+    assert record.questions == ()
+    assert [o.order for o in record.orders] == [order]
+    assert operator.told[0] == record.orders[0].answer
     assert len(path) == 0 or np.ptp(path[:, 0]) < 1.0
+
+
+@pytest.mark.parametrize("order", [Order.ABORT, Order.LAND, Order.RETURN])
+@pytest.mark.parametrize("at_s", [1.3, 4.0, 7.7])
+def test_an_order_in_flight_decides_the_next_motion(order: Order, at_s: float) -> None:
+    operator = RecordedOperator([Reply.NO], orders=[(at_s, order)])
+    record, _, events = fly(hall(), operator)
+    assert record.outcome is Outcome.ABORTED, record.reason
+    legs = [e for e in events if isinstance(e, LegFlown)]
+    assert legs[0].log.end is FlightEnd.INTERRUPTED
+    ordered_s = record.orders[0].time_s
+    assert ordered_s - at_s <= 0.5, "within one camera period"
+    assert legs[0].log.time_s[-1] - ordered_s < 2.5, "it brakes at once"
+    here = legs[0].log.position_m[-1]
+    if order is Order.RETURN:
+        assert np.linalg.norm(legs[-1].log.position_m[-1] - (1.5, 2.0, 1.2)) < 0.6
+    else:
+        assert "stands on the ground" in record.reason
+        assert np.linalg.norm(here[:2] - legs[-1].log.position_m[-1][:2]) < 0.1
+
+
+def test_hold_is_a_hold_and_continue_goes_on() -> None:
+    operator = RecordedOperator([Reply.NO], orders=[(2.0, Order.HOLD), (30.0, Order.CONTINUE)])
+    record, path, events = fly(hall(), operator)
+    assert record.outcome is Outcome.SUCCESS, record.reason
+    assert not enters_cloud(path)
+    times = np.concatenate([e.log.time_s for e in events if isinstance(e, LegFlown)])
+    assert np.diff(times).max() > 20, "nothing moved meanwhile"
+    assert len(record.questions) == 1, "what was answered is not asked again"
+    assert "continue" in operator.told[0]
+
+
+def test_holding_counts_the_battery_and_ends_in_time_to_return() -> None:
+    operator = RecordedOperator([Reply.NO], orders=[(3.0, Order.HOLD)])
+    record, _, events = fly(hall(endurance_s=60.0), operator)
+    assert record.outcome is Outcome.ABORTED, record.reason
+    assert "battery" in record.reason
+    assert "back at the start" in record.reason
+    last = [e for e in events if isinstance(e, LegFlown)][-1]
+    assert last.phase == "return"
+    assert 20 < last.log.time_s[-1] < 60
+
+
+def test_hold_during_a_question_withdraws_it_and_it_is_asked_again() -> None:
+    patient = Answer(reply=Reply.NO, latency_s=10.0, text="no")
+    operator = RecordedOperator([patient, Reply.NO], orders=[(2.0, Order.HOLD), (5.0, Order.CONTINUE)])
+    record, path, _ = fly(hall(), operator)
+    assert record.outcome is Outcome.SUCCESS
+    assert len(operator.questions) == 2
+    assert len(record.questions) == 1
+    assert any(n.kind == "withdrawn" for n in record.notices)
+    assert not enters_cloud(path)
+
+
+def test_the_first_of_several_operators_counts() -> None:
+    quick, slow = RecordedOperator([Reply.NO]), RecordedOperator([Answer(reply=Reply.YES, latency_s=1.0, text="yes")])
+    record, path, _ = fly(hall(toxic=True), (slow, quick))
+    assert record.outcome is Outcome.SUCCESS
+    assert [q.reply for q in record.questions] == [Reply.NO]
+    assert not enters_cloud(path)
+
+
+def test_waiting_for_an_answer_takes_mission_time() -> None:
+    def seconds(latency_s: float) -> float:
+        operator = RecordedOperator([Answer(reply=Reply.NO, latency_s=latency_s, text="no")])
+        _, _, events = fly(hall(), operator)
+        return float([e for e in events if isinstance(e, LegFlown)][-1].log.time_s[-1])
+
+    assert seconds(10.0) - seconds(0.0) == pytest.approx(10.0, abs=0.6)
 
 
 def test_unsure_withdraws_the_question_and_the_safe_way_is_flown() -> None:
@@ -120,10 +193,11 @@ def test_an_interrupt_leaves_the_vehicle_holding_and_a_verdict() -> None:
     world = build_world(hall(), base=None, seed=0)
     recorder = MemoryRecorder()
     choices = Choices(vehicle="kinematic")
-    with crew_for(world, choices, operator=FunctionOperator(interrupt), recorder=recorder) as crew:
+    people = (FunctionOperator(interrupt),)
+    with components_for(world, choices, operators=people, recorder=recorder) as made:
         with pytest.raises(KeyboardInterrupt):
-            fly_mission(crew)
-        assert np.linalg.norm(crew.vehicle.state().velocity_mps) < 1e-6
+            fly_mission(made)
+        assert np.linalg.norm(made.vehicle.state().velocity_mps) < 1e-6
     assert recorder.events[-1].verdict.outcome is Outcome.ABORTED
 
 

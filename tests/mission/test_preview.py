@@ -3,20 +3,17 @@
 import itertools
 from pathlib import Path
 
-from mintpilot.assembly.crews import Choices, thinking_parts
+from mintpilot.assembly.components import Choices, deliberation_parts
 from mintpilot.assembly.worlds import build_world
-from mintpilot.mission.mind import Mind
 from mintpilot.mission.preview import preview
-from mintpilot.reasoning.belief import prior_belief
 
 from .scenes import hall
 
 
 def previewed(**bounds: object):
     world = build_world(hall(), base=Path(), seed=0)
-    mind = Mind(map=world.map, belief=prior_belief(()))
-    parts = thinking_parts(world, Choices())
-    return preview(mind, parts, start_m=world.mission.start_m, endurance_s=100.0, **bounds)
+    parts = deliberation_parts(world, Choices())
+    return preview(world.map, parts, **bounds)
 
 
 def test_all_histories_of_answers_are_followed_when_there_is_time():

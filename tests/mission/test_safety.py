@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.mission.scenes import hall
 
-from mintpilot.assembly.crews import Choices, crew_for
+from mintpilot.assembly.components import Choices, components_for
 from mintpilot.assembly.worlds import build_world
 from mintpilot.core.events import LegFlown
 from mintpilot.core.mission import Outcome
@@ -19,7 +19,7 @@ from mintpilot.core.ports import Decision, Fly, Situation, Strategy
 from mintpilot.core.query import Query, Question, Reply
 from mintpilot.core.tree import Certificate, StopReason
 from mintpilot.interaction.scripted import FunctionOperator
-from mintpilot.mission.loop import Crew, fly_mission
+from mintpilot.mission.loop import fly_mission
 from mintpilot.recording.recorders import MemoryRecorder
 
 CERTIFICATE = Certificate(
@@ -49,13 +49,14 @@ class Liar(Strategy):
 def fly(strategy: Strategy | None = None, *, simulated: bool = False, answer=lambda q, p: Reply.YES, word=None):
     world = build_world(hall(toxic=True), base=None, seed=0)
     recorder = MemoryRecorder()
-    with crew_for(world, Choices(vehicle="kinematic"), operator=FunctionOperator(answer), recorder=recorder) as crew:
-        changed: Crew = replace(crew, simulated=simulated)
+    people = (FunctionOperator(answer),)
+    with components_for(world, Choices(vehicle="kinematic"), operators=people, recorder=recorder) as made:
+        parts = made.parts
         if strategy is not None:
-            changed = replace(changed, thinking=replace(crew.thinking, strategy=strategy))
+            parts = replace(parts, strategy=strategy)
         if word is not None:
-            changed = replace(changed, word=word)
-        verdict = fly_mission(changed)
+            parts = replace(parts, word=word)
+        verdict = fly_mission(replace(made, parts=parts, simulated=simulated))
     legs = [e.log.position_m for e in recorder.events if isinstance(e, LegFlown)]
     return verdict, np.vstack(legs) if legs else np.zeros((0, 3))
 

@@ -13,7 +13,7 @@ from mintpilot.core.gap import BLOCKED, PASSABLE, Assumptions, Candidate, GapKin
 from mintpilot.core.geometry import Box, GridFrame
 from mintpilot.core.mission import Mission, Outcome, Verdict
 from mintpilot.core.observation import Attribute, CameraModel, Detection, Frame, RegionKind
-from mintpilot.core.plan import Leg, Plan, PlanningProblem, Site, Stop
+from mintpilot.core.plan import Leg, Plan, Site, Stop
 from mintpilot.core.query import Answer, Literal, Query, Question, Reply, Saying, SayingKind
 from mintpilot.core.semantic_map import Cell, Knowledge, MapObject, Region, Room, SemanticMap
 from mintpilot.core.task import Action, Reference, SubGoal, Task
@@ -153,8 +153,6 @@ def tell(*, label: str = "box", description: str = "the grey smoke near the gate
         instruction=mission.instruction, subgoals=(SubGoal(action=Action.GO, reference=Reference(phrase="box")),)
     )
     before = hall(label=label, description=description)
-    problem = PlanningProblem(map=before, start_m=mission.start_m, stops=(chosen.legs[0].stop,),
-                              gaps=(smoke, target), limits=mission.limits)  # fmt: skip
     known = Knowledge.YES if reply is Reply.YES else Knowledge.NO
     survey, survey_log = flight(way([(2, 2), (18, 2), (18, 8)]))
     story: list[ev.Event] = [ev.MissionStarted(mission=mission, task=task, seed=7, strategy="mint")]
@@ -167,13 +165,13 @@ def tell(*, label: str = "box", description: str = "the grey smoke near the gate
         ev.Timed(stage="survey", seconds=2.5),
         ev.MapUpdated(map=before, why="survey"),
         ev.Timed(stage="mapping", seconds=0.25),
-        ev.Deliberated(round=1, gaps=(smoke, target), problem=problem, mint=mint, chosen=scored,
+        ev.Deliberated(round=1, gaps=(smoke, target), mint=mint, chosen=scored,
                        alternatives=(scored,), certificate=None, seconds=0.12),
         ev.Timed(stage="deliberation", seconds=0.12),
         ev.Asked(question=question, scored=scored, wording_s=0.001,
                  answer=Answer(reply=reply, latency_s=4.2, text=words)),
         ev.MapUpdated(map=hall(known, label=label, description=description), why="answer"),
-        ev.Deliberated(round=2, gaps=(target,), problem=problem, mint=None, chosen=None, alternatives=(),
+        ev.Deliberated(round=2, gaps=(target,), mint=None, chosen=None, alternatives=(),
                        certificate=certificate, seconds=0.03),
         ev.Timed(stage="deliberation", seconds=0.03),
         ev.PlanChosen(plan=chosen, certificate=certificate, explanations=explanations),

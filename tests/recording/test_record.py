@@ -6,7 +6,6 @@ import dataclasses
 import io
 import json
 
-import numpy as np
 import pytest
 from rich.console import Console
 
@@ -25,7 +24,6 @@ from mintpilot.core.query import (
     choice,
 )
 from mintpilot.recording.build import build_record, flight_record
-from mintpilot.recording.event_json import MAX_ROWS, event_line
 from mintpilot.recording.history import History
 from mintpilot.recording.in_memory import HistoryRecorder
 from mintpilot.recording.record import MissionRecord, read_record
@@ -150,17 +148,6 @@ def test_damaged_records_are_refused(tmp_path, make_events):
     file.write_text(json.dumps(data))
     with pytest.raises(RecordError, match=r"flight\.flown_m: .*restore it"):
         read_record(file)
-
-
-def test_long_paths_are_thinned_in_the_events_only():
-    plan = way([(x, 0) for x in range(60)])
-    trajectory, log = flight(plan)
-    line = json.loads(
-        event_line(ev.LegFlown(phase="mission", stop_id="a", trajectory=trajectory, log=log), number=0, at_s=0)
-    )
-    rows = line["log"]["position_m"]
-    assert len(log.position_m) > MAX_ROWS == len(rows)
-    assert np.allclose([rows[0], rows[-1]], log.position_m[[0, -1]], atol=1e-3)
 
 
 def _worded(story):

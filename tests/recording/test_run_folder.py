@@ -17,7 +17,7 @@ from PIL import Image
 
 from mintpilot.core.errors import RecordError
 from mintpilot.core.mission import Outcome
-from mintpilot.recording.event_json import read_events
+from mintpilot.recording.event_log import read_event_log
 from mintpilot.recording.record import read_record
 from mintpilot.recording.recorders import MemoryRecorder, NullRecorder, TeeRecorder
 from mintpilot.recording.run_folder import RunFolder, new_run_path
@@ -72,9 +72,9 @@ def test_events_are_on_disk_as_they_happen(tmp_path, make_events):
     folder = RunFolder(tmp_path)
     for count, event in enumerate(make_events(), start=1):
         folder.record(event)
-        written = read_events(tmp_path)
-        assert [e["number"] for e in written] == list(range(count))
-        assert written[-1]["event"] == type(event).__name__
+        written = list(read_event_log(tmp_path))
+        assert [e.number for e in written] == list(range(1, count + 1))
+        assert type(written[-1].event) is type(event)
     folder.close()
 
 
@@ -86,8 +86,9 @@ def test_a_killed_program_loses_no_event(tmp_path, make_events):
     process.wait()
     process.stdout.close()
     told = make_events()
-    events = read_events(tmp_path / "run")
-    assert [e["event"] for e in events] == [type(event).__name__ for event in told]
+    log = read_event_log(tmp_path / "run")
+    assert [type(e.event) for e in log] == [type(event) for event in told]
+    assert f"after event {len(told)}: still running, killed" in log.cut
     assert read_record(tmp_path / "run").outcome is Outcome.SUCCESS
     assert list((tmp_path / "run" / "frames").glob("*.jpg"))
 
@@ -132,9 +133,11 @@ def test_a_full_disk_is_noted_and_the_mission_goes_on(tmp_path):
     process = child(tmp_path / "run", after=limit.format(hard=hard), end=again)
     assert process.communicate(timeout=60)[0] == b""
     assert process.returncode == 0
-    events = read_events(tmp_path / "run")
-    assert len(events) > 5
-    numbers = [e["number"] for e in events]
+    log = read_event_log(tmp_path / "run")
+    numbers = [e.number for e in log]
+    assert len(numbers) > 5
+    assert not log.cut
+    assert log.lost == numbers[-1] - len(numbers)
     assert any(b - a > 1 for a, b in pairwise(numbers)), "the gap shows in the numbers"
     assert numbers[-3:] == [numbers[-1] - 2, numbers[-1] - 1, numbers[-1]]
     notices = {n.kind: n.text for n in read_record(tmp_path / "run").notices}
@@ -172,17 +175,6 @@ def test_pictures_are_bounded_and_those_that_prove_something_stay(tmp_path, make
     proofs = {seen.view[0] for seen in record.seen if seen.view}
     assert proofs <= kept
     assert len(kept) <= len(proofs) + 8
-
-
-def test_damaged_and_foreign_event_files(tmp_path):
-    file = tmp_path / "events.ndjson"
-    file.write_bytes(b'{"event":"A","number":0}\n{"event":"B","num')
-    assert [e["event"] for e in read_events(tmp_path)] == ["A"]
-    file.write_bytes(b"\xff\xfe nonsense\n")
-    with pytest.raises(RecordError, match="holds no event"):
-        read_events(file)
-    with pytest.raises(RecordError, match="cannot read"):
-        read_events(tmp_path / "nowhere.ndjson")
 
 
 def test_new_paths_are_new_and_safe(tmp_path):

@@ -6,9 +6,11 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tests.driving import act, ended, follow, land
 
 from mintpilot.core.errors import DeviceError, InputError
 from mintpilot.core.mission import Outcome
+from mintpilot.core.motion import FollowTrajectory, MotionEnd, PerformAction
 from mintpilot.core.task import Action
 from mintpilot.core.trajectory import FlightEnd, Trajectory, VehicleState
 from mintpilot.simulation.kinematic import KinematicSimulator
@@ -28,7 +30,7 @@ def simulator(world: Scene | None = None, rules: FlightRules = RULES) -> Kinemat
 def test_flies_exactly_and_hovers() -> None:
     vehicle = simulator()
     way = line(START, (6, 4, 2))
-    log = vehicle.follow(way)
+    log = follow(vehicle, way)
     assert log.end is FlightEnd.ARRIVED
     np.testing.assert_allclose(log.position_m[-1], (6, 4, 2))
     assert (log.position_m == log.reference_m).all()
@@ -40,7 +42,7 @@ def test_flies_exactly_and_hovers() -> None:
 
 def test_a_wall_in_the_way_is_a_collision_and_ends_it() -> None:
     vehicle = simulator(scene(solids=(block((5, 0, 0), (5.2, 8, 3)),)))
-    log = vehicle.follow(line(START, (8, 2, 1.5)))
+    log = follow(vehicle, line(START, (8, 2, 1.5)))
     assert log.end is FlightEnd.FAILED
     assert "crate-1" in log.reason
     assert log.position_m[-1, 0] == pytest.approx(5 - RULES.radius_m, abs=0.06)
@@ -48,9 +50,9 @@ def test_a_wall_in_the_way_is_a_collision_and_ends_it() -> None:
     assert verdict is not None
     assert verdict.outcome is Outcome.COLLISION
     here = vehicle.state().position_m
-    again = vehicle.follow(line(here, START))
+    again = follow(vehicle, line(here, START))
     assert again.end is FlightEnd.FAILED
-    vehicle.act(stop(Action.GO, here), 1.0)
+    act(vehicle, stop(Action.GO, here), 1.0)
     vehicle.hold()
     assert vehicle.state().position_m == here
 
@@ -88,7 +90,7 @@ def test_touching_is_hull_against_shape(
 )
 def test_walls_rooms_and_people_can_be_touched(goal: tuple[float, float, float], what: str) -> None:
     world = scene(rooms=(room(None),), persons=(Person(id="person-1", position_m=(8, 2, 0)),))
-    log = simulator(world).follow(line(START, goal))
+    log = follow(simulator(world), line(START, goal))
     assert log.end is FlightEnd.FAILED
     assert what in log.reason
 
@@ -97,12 +99,12 @@ def test_late_solids_count_from_their_time_of_the_mission_on() -> None:
     world = scene(solids=(block((5, 0, 0), (5.2, 8, 3), appears_s=6.0),))
     early, late, survey = simulator(world), simulator(world), simulator(world)
     early.begin_mission()
-    assert early.follow(line(START, (8, 2, 1.5))).end is FlightEnd.ARRIVED
+    assert follow(early, line(START, (8, 2, 1.5))).end is FlightEnd.ARRIVED
     late.begin_mission()
-    late.act(stop(Action.GO, START), 6.0)
-    assert late.follow(line(START, (8, 2, 1.5))).end is FlightEnd.FAILED
-    survey.act(stop(Action.GO, START), 6.0)
-    assert survey.follow(line(START, (8, 2, 1.5))).end is FlightEnd.ARRIVED
+    act(late, stop(Action.GO, START), 6.0)
+    assert follow(late, line(START, (8, 2, 1.5))).end is FlightEnd.FAILED
+    act(survey, stop(Action.GO, START), 6.0)
+    assert follow(survey, line(START, (8, 2, 1.5))).end is FlightEnd.ARRIVED
 
 
 @pytest.mark.parametrize("wish_s", [0.4, 1.0, 2.2])
@@ -115,7 +117,7 @@ def test_the_watch_stops_it_on_its_way(wish_s: float) -> None:
         seen.append(state)
         return state.time_s >= wish_s
 
-    log = vehicle.follow(way, watch)
+    log = follow(vehicle, way, watch)
     assert log.end is FlightEnd.INTERRUPTED
     np.testing.assert_allclose(np.diff([s.time_s for s in seen]), 0.5)
     assert vehicle.state().velocity_mps == (0, 0, 0)
@@ -124,7 +126,7 @@ def test_the_watch_stops_it_on_its_way(wish_s: float) -> None:
     speed = np.linalg.norm(np.diff(log.position_m, axis=0), axis=1) / np.diff(log.time_s)
     assert speed[-1] < 0.1
     assert np.abs(np.diff(speed)).max() < 0.2, "no jolt"
-    assert vehicle.follow(line(vehicle.state().position_m, START)).end is FlightEnd.ARRIVED
+    assert follow(vehicle, line(vehicle.state().position_m, START)).end is FlightEnd.ARRIVED
 
 
 def test_braking_keeps_to_the_curve_and_its_own_derivatives() -> None:
@@ -142,26 +144,26 @@ def test_braking_keeps_to_the_curve_and_its_own_derivatives() -> None:
 
 def test_smoke_endurance_and_volume_end_the_flight() -> None:
     toxic = simulator(scene(smokes=(smoke(toxic=True),)))
-    log = toxic.follow(line(START, (8, 2, 1.5)))
+    log = follow(toxic, line(START, (8, 2, 1.5)))
     assert log.end is FlightEnd.FAILED
     assert log.position_m[-1, 0] == pytest.approx(5.0, abs=0.06)
     tired = simulator(rules=FlightRules(endurance_s=3.0))
     tired.begin_mission()
     assert tired.state().endurance_left_s == 3.0
-    log = tired.follow(line(START, (9, 2, 1.5)))
+    log = follow(tired, line(START, (9, 2, 1.5)))
     assert log.time_s[-1] == pytest.approx(3.0, abs=0.05)
     assert tired.final().outcome is Outcome.ENDURANCE
     high = simulator()
-    high.follow(line(START, (2, 2, 4)))
+    follow(high, line(START, (2, 2, 4)))
     assert high.final().outcome is Outcome.LEFT_VOLUME
 
 
 def test_acts_take_their_time() -> None:
     vehicle = simulator(rules=FlightRules(endurance_s=5.0))
     vehicle.begin_mission()
-    vehicle.act(stop(Action.GO, START), 2.0)
+    act(vehicle, stop(Action.GO, START), 2.0)
     assert vehicle.state().endurance_left_s == pytest.approx(3.0)
-    vehicle.act(stop(Action.GO, START), 4.0)
+    act(vehicle, stop(Action.GO, START), 4.0)
     assert vehicle.final().outcome is Outcome.ENDURANCE
 
 
@@ -193,7 +195,30 @@ def bad_trajectories() -> list[tuple[Trajectory, type[Exception], str]]:
 @pytest.mark.parametrize(("way", "error", "words"), bad_trajectories())
 def test_what_cannot_be_followed_is_refused(way: Trajectory, error: type[Exception], words: str) -> None:
     vehicle = simulator()
-    with pytest.raises(error, match=words):
-        vehicle.follow(way)
+    if error is DeviceError:
+        refused = ended(vehicle, FollowTrajectory(id=1, trajectory=way))
+        assert refused.end is MotionEnd.REFUSED
+        assert words in refused.reason
+    else:
+        with pytest.raises(error, match=words):
+            follow(vehicle, way)
     assert vehicle.state().position_m == START
-    assert vehicle.follow(line(START, (6, 2, 1.5))).end is FlightEnd.ARRIVED
+    assert follow(vehicle, line(START, (6, 2, 1.5))).end is FlightEnd.ARRIVED
+
+
+def test_it_lands_on_the_ground_and_on_what_stands_there() -> None:
+    free = simulator()
+    assert land(free).end is MotionEnd.ARRIVED
+    assert free.state().position_m[2] == pytest.approx(0.15, abs=0.01)
+    box = simulator(scene(solids=(block((1, 1, 0), (3, 3, 0.8)),)))
+    assert land(box).end is MotionEnd.ARRIVED
+    assert 0.8 < box.state().position_m[2] < 1.0
+    assert box.verdict() is None
+
+
+def test_an_act_that_is_broken_off_does_not_count() -> None:
+    vehicle = simulator()
+    begun = vehicle.state().time_s
+    event = ended(vehicle, PerformAction(id=1, stop=stop(Action.GO, START), dwell_s=5.0), lambda state: True)
+    assert event.end is MotionEnd.STOPPED
+    assert vehicle.state().time_s - begun < 1.0

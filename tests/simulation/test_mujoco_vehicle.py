@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from collections.abc import Callable
 from itertools import pairwise
 
 import numpy as np
 import pytest
+from tests.driving import act, follow
 
 from mintpilot.core.errors import DeviceError
 from mintpilot.core.geometry import Vec3
 from mintpilot.core.mission import Outcome
-from mintpilot.core.ports import Watch
 from mintpilot.core.task import Action
 from mintpilot.core.trajectory import FlightEnd, FlightLog, VehicleState
 from mintpilot.simulation.kinematic import KinematicSimulator
@@ -35,7 +36,7 @@ def rms_m(logs: list[FlightLog]) -> float:
 
 def fly_route(seed: int, rules: FlightRules = RULES) -> tuple[MujocoSimulator, list[FlightLog]]:
     vehicle = MujocoSimulator(scene(), rules, seed=seed)
-    return vehicle, [vehicle.follow(line(a, b, speed_mps=0.8)) for a, b in pairwise(ROUTE)]
+    return vehicle, [follow(vehicle, line(a, b, speed_mps=0.8)) for a, b in pairwise(ROUTE)]
 
 
 def test_tracks_closely_in_noise_and_gusts() -> None:
@@ -84,7 +85,7 @@ def test_both_simulators_mean_the_same(world: Scene, goal: Vec3, outcome: Outcom
     ends = []
     for vehicle in (KinematicSimulator(world, RULES, seed=0), MujocoSimulator(world, RULES, seed=0)):
         vehicle.begin_mission()
-        log = vehicle.follow(way)
+        log = follow(vehicle, way)
         assert vehicle.final().outcome is outcome
         assert (vehicle.verdict() is None) == (log.end is FlightEnd.ARRIVED)
         ends.append((log, vehicle.state()))
@@ -97,16 +98,16 @@ def test_both_simulators_mean_the_same(world: Scene, goal: Vec3, outcome: Outcom
 def test_the_watch_stops_it_and_it_flies_on() -> None:
     for vehicle in (KinematicSimulator(scene(), RULES, seed=0), MujocoSimulator(scene(), RULES, seed=0)):
         seen: list[VehicleState] = []
-        log = vehicle.follow(line(START, (9, 2, 1.5)), _after(1.6, seen))
+        log = follow(vehicle, line(START, (9, 2, 1.5)), _after(1.6, seen))
         assert log.end is FlightEnd.INTERRUPTED
         np.testing.assert_allclose(np.diff([s.time_s for s in seen]), 0.5, atol=1e-6)
         state = vehicle.state()
         assert np.linalg.norm(state.velocity_mps) < 0.1
         assert 3 < state.position_m[0] < 8
-        assert vehicle.follow(line(state.position_m, START)).end is FlightEnd.ARRIVED
+        assert follow(vehicle, line(state.position_m, START)).end is FlightEnd.ARRIVED
 
 
-def _after(time_s: float, seen: list[VehicleState]) -> Watch:
+def _after(time_s: float, seen: list[VehicleState]) -> Callable[[VehicleState], bool]:
     def watch(state: VehicleState) -> bool:
         seen.append(state)
         return state.time_s > time_s
@@ -116,11 +117,11 @@ def _after(time_s: float, seen: list[VehicleState]) -> Watch:
 
 def test_touching_the_floor_is_a_collision() -> None:
     vehicle = MujocoSimulator(scene(), RULES, seed=0)
-    log = vehicle.follow(line(START, (2, 2, 0.02), speed_mps=0.6))
+    log = follow(vehicle, line(START, (2, 2, 0.02), speed_mps=0.6))
     assert log.end is FlightEnd.FAILED
     assert vehicle.final().outcome is Outcome.COLLISION
-    assert vehicle.follow(line(vehicle.state().position_m, START)).end is FlightEnd.FAILED
-    vehicle.act(stop(Action.GO, START), 0.5)
+    assert follow(vehicle, line(vehicle.state().position_m, START)).end is FlightEnd.FAILED
+    act(vehicle, stop(Action.GO, START), 0.5)
     vehicle.hold()
 
 
@@ -128,7 +129,7 @@ def test_holding_and_acting_keep_the_place() -> None:
     vehicle = MujocoSimulator(scene(), RULES, seed=2)
     vehicle.begin_mission()
     for _ in range(5):
-        vehicle.act(stop(Action.GO, START), 2.0)
+        act(vehicle, stop(Action.GO, START), 2.0)
         vehicle.hold()
     state = vehicle.state()
     assert state.time_s == pytest.approx(10.0, abs=1.0)
@@ -141,7 +142,7 @@ def test_a_closed_simulator_says_so() -> None:
     vehicle.close()
     vehicle.hold()
     with pytest.raises(DeviceError, match="closed"):
-        vehicle.follow(line(START, (3, 2, 1.5)))
+        follow(vehicle, line(START, (3, 2, 1.5)))
     with pytest.raises(DeviceError, match="closed"):
         vehicle.capture()
 

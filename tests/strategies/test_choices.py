@@ -107,9 +107,9 @@ class Truth:
 def test_a_scripted_person_picks_the_true_option_and_errs_evenly_over_the_others() -> None:
     gap = open_situation(hall(4), EXACT).belief.gaps[0]
     question = word_question(which(gap, "g0", "g1", "g2"), (gap,), None)
-    right = ScriptedOperator(Truth(), rng=np.random.default_rng(0)).ask(question, 20.0)
+    right = ScriptedOperator(Truth(), rng=np.random.default_rng(0)).answer(question, 20.0)
     assert (right.reply, right.option, right.text) == (Reply.OPTION, 1, "the box g1")
     wrong = ScriptedOperator(Truth(), rng=np.random.default_rng(0), answer_error=1.0)
-    counts = np.bincount([wrong.ask(question, 20.0).option or 0 for _ in range(600)], minlength=4)
+    counts = np.bincount([wrong.answer(question, 20.0).option or 0 for _ in range(600)], minlength=4)
     assert counts[1] == 0
     assert counts[[0, 2, 3]].min() > 150

@@ -7,8 +7,8 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TypeAlias, cast
 
-from mintpilot.assembly.crews import Choices, VehicleChoice, crew_for, scripted_operator, thinking_parts
-from mintpilot.assembly.deliberation import DeliberationReport, deliberation_report
+from mintpilot.assembly.components import Choices, VehicleChoice, components_for, deliberation_parts, scripted_operator
+from mintpilot.assembly.deliberation_report import DeliberationReport, deliberation_report
 from mintpilot.assembly.strategies import Argument, strategy_label
 from mintpilot.assembly.talk import Talk, talk_for
 from mintpilot.assembly.validation import validation_problems
@@ -17,13 +17,11 @@ from mintpilot.core.errors import UnknownNameError
 from mintpilot.core.events import Event
 from mintpilot.core.ports import Ask, LanguageModel, Operator, Recorder
 from mintpilot.interaction.scripted import ScriptedOperator
-from mintpilot.mission.explanations import explained_first
+from mintpilot.mission.explanations import explanations
 from mintpilot.mission.loop import fly_mission
-from mintpilot.mission.mind import Mind
 from mintpilot.mission.preview import preview
 from mintpilot.mission_file.reader import Problem, find_problems, read_mission
 from mintpilot.mission_file.schema import MissionFile
-from mintpilot.reasoning.belief import prior_belief
 from mintpilot.recording.in_memory import HistoryRecorder
 from mintpilot.recording.record import MissionRecord
 from mintpilot.recording.recorders import TeeRecorder
@@ -33,6 +31,9 @@ Progress: TypeAlias = Callable[[Event], object]
 """Called with every event of a mission, as it happens."""
 MakeOperator: TypeAlias = Callable[[Talk], Operator]
 """Makes an operator that hears free words, given the mission's language: what understands them, and which it is."""
+
+AnyOperator: TypeAlias = Operator | MakeOperator | str
+"""Somebody who answers, what makes such a one, or ``"scripted"``."""
 
 
 def check_mission(path: str | Path) -> list[Problem]:
@@ -78,14 +79,9 @@ def plan_mission(
 
 def _planned(file: MissionFile, folder: Path, talk: Talk, choices: Choices, *, seed: int | None) -> DeliberationReport:
     world = build_world(file, base=folder, seed=seed, parse=talk.parse)
-    parts = thinking_parts(world, choices, talk)
+    parts = deliberation_parts(world, choices, talk)
     begun = time.perf_counter()
-    seen = preview(
-        Mind(map=world.map, belief=prior_belief(())),
-        parts,
-        start_m=world.mission.start_m,
-        endurance_s=world.mission.limits.endurance_s,
-    )
+    seen = preview(world.map, parts)
     seconds = time.perf_counter() - begun
     decision = seen.first.decision
     question = None
@@ -97,7 +93,7 @@ def _planned(file: MissionFile, folder: Path, talk: Talk, choices: Choices, *, s
         seen,
         mission=file.name,
         strategy=strategy_label(choices.strategy, choices.strategy_arguments),
-        explanations=explained_first(seen.first),
+        explanations=explanations(seen.first.situation, decision.mint),
         question=question,
         seconds=seconds,
     )
@@ -106,7 +102,7 @@ def _planned(file: MissionFile, folder: Path, talk: Talk, choices: Choices, *, s
 def run_mission(
     mission: str | Path | MissionFile,
     *,
-    operator: Operator | MakeOperator | str = "scripted",
+    operator: AnyOperator | tuple[AnyOperator, ...] = "scripted",
     vehicle: str = "mujoco",
     strategy: str = "mint",
     strategy_arguments: Mapping[str, Argument] | None = None,
@@ -121,8 +117,8 @@ def run_mission(
 
     Args:
         mission: a mission file's path, or its contents.
-        operator: who answers, or what makes such a one of the mission's language; ``"scripted"``: one that knows the
-            truth, with the errors that the file states.
+        operator: who answers and gives orders, or what makes such a one of the mission's language; ``"scripted"``: one
+            that knows the truth, with the errors that the file states. Several may be given.
         vehicle: ``"mujoco"`` or ``"kinematic"``; a mission on a given map is always flown by the latter.
         strategy: name of the method of asking.
         strategy_arguments: its own, e.g. ``{"quantile": 0.8}``; they override those of the file.
@@ -150,24 +146,33 @@ def run_mission(
     )
     with talk_for(file.language, llm=llm, lang=lang) as talk:
         world = build_world(file, base=folder, seed=seed, parse=talk.parse)
-        person = _operator(operator, world, file, talk)
-        return _flown(world, choices, person, talk, out=out, progress=progress)
+        several = operator if isinstance(operator, tuple) else (operator,)
+        people = tuple(_operator(one, world, file, talk) for one in several)
+        return _flown(world, choices, people, talk, out=out, progress=progress)
 
 
 def _flown(
-    world: World, choices: Choices, person: Operator, talk: Talk, *, out: Path | None, progress: Progress | None
+    world: World,
+    choices: Choices,
+    people: tuple[Operator, ...],
+    talk: Talk,
+    *,
+    out: Path | None,
+    progress: Progress | None,
 ) -> MissionRecord:
     keeper = RunFolder(out) if out is not None else None
     recorder = HistoryRecorder()
     recorders: list[Recorder] = [keeper if keeper is not None else recorder]
     if progress is not None:
         recorders.append(_Told(progress))
+    tee = TeeRecorder(*recorders)
+    made = components_for(world, choices, operators=people, recorder=tee, talk=talk, digests=keeper is not None)
     if keeper is None:
-        with crew_for(world, choices, operator=person, recorder=TeeRecorder(*recorders), talk=talk) as crew:
-            fly_mission(crew)
+        with made as components:
+            fly_mission(components)
         return recorder.close()
-    with keeper, crew_for(world, choices, operator=person, recorder=TeeRecorder(*recorders), talk=talk) as crew:
-        fly_mission(crew)
+    with keeper, made as components:
+        fly_mission(components)
     return keeper.close()
 
 
@@ -200,9 +205,9 @@ def _vehicle(name: str) -> VehicleChoice:
         raise UnknownNameError("vehicle", name, list(VehicleChoice)) from None
 
 
-def _operator(operator: Operator | MakeOperator | str, world: World, file: MissionFile, talk: Talk) -> Operator:
+def _operator(operator: AnyOperator, world: World, file: MissionFile, talk: Talk) -> Operator:
     if not isinstance(operator, str):
-        return cast(Operator, operator) if hasattr(operator, "ask") else operator(talk)
+        return cast(Operator, operator) if hasattr(operator, "poll") else operator(talk)
     if operator != "scripted":
         raise UnknownNameError("operator", operator, ["scripted"])
     scripted: ScriptedOperator = scripted_operator(world, file.operator)

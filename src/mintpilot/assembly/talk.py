@@ -9,7 +9,7 @@ from mintpilot.assembly.guarded_model import GuardedModel
 from mintpilot.assembly.registry import load
 from mintpilot.core.geometry import Vec3
 from mintpilot.core.ports import LanguageModel, Proposer
-from mintpilot.core.query import YES_PART, Evidence, Meaning, Query, Question
+from mintpilot.core.query import YES_PART, Evidence, Meaning, Order, Query, Question
 from mintpilot.core.task import Task
 from mintpilot.core.tree import Mint
 from mintpilot.elicitation.wording import word_question
@@ -29,6 +29,9 @@ LONGEST_ANSWER = 300
 """Characters; what is longer is no answer to a yes/no question, whatever is in it."""
 SCREEN_S = 8.0
 """Better words for a screen may take this long: the first ones stand there meanwhile. Who speaks waits far shorter."""
+
+
+ORDER_WORDS = {order.value: order for order in Order} | {"stop": Order.HOLD, "go on": Order.CONTINUE}
 
 
 class Talk(AbstractContextManager["Talk"]):
@@ -87,6 +90,11 @@ class Talk(AbstractContextManager["Talk"]):
             understood = understand_with_model(text, question, self._model, timeout_s=each_s)
         return _meaning(understood)
 
+    def order_of(self, text: str) -> Order | None:
+        """The order that typed words are where nothing is asked; None: they are none."""
+        words = text.strip().lower().rstrip(".! ")
+        return ORDER_WORDS.get(words)
+
     def take_remarks(self) -> tuple[str, ...]:
         """What went wrong with the model since it was last called, in sentences; each is told once."""
         return () if self._model is None else self._model.take_remarks()
@@ -139,7 +147,7 @@ def talk_for(spec: LanguageSpec, *, llm: str | LanguageModel | None = None, lang
 
 def _meaning(understood: Understood) -> Meaning:
     if understood.reading is Reading.COMMAND:
-        return Meaning(reply=None, command=understood.command, by=understood.by)
+        return Meaning(reply=None, order=understood.command, by=understood.by)
     if understood.reading is Reading.OTHER:
         return Meaning(reply=None, by=understood.by)
     also = () if understood.also is None else (Evidence(query=Query(literals=(understood.also,)), part=YES_PART),)

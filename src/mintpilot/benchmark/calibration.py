@@ -10,13 +10,12 @@ from importlib.resources import files
 
 import numpy as np
 
-from mintpilot.assembly.crews import Choices, thinking_parts
+from mintpilot.assembly.components import Choices, deliberation_parts
 from mintpilot.assembly.worlds import World
 from mintpilot.benchmark.experiment import Cell, Part
 from mintpilot.benchmark.methods import Method
 from mintpilot.core.errors import InfeasibleError
-from mintpilot.mission.mind import Mind, think
-from mintpilot.reasoning.belief import prior_belief
+from mintpilot.mission.rehearsal import begin
 
 FIRST_SEED = 1_000_000
 """Experiments count from small seeds; calibration worlds lie far off."""
@@ -61,11 +60,9 @@ def nonconformity(world: World) -> float | None:
 
     None where nothing can be flown, or the truth is not a hypothesis of the tree.
     """
-    parts = thinking_parts(world, Choices())
-    start, endurance = world.mission.start_m, world.mission.limits.endurance_s
-    mind = Mind(map=world.map, belief=prior_belief(()))
+    parts = deliberation_parts(world, Choices())
     try:
-        mint = think(mind, parts, start_m=start, endurance_s=endurance).decision.mint
+        mint = begin(parts, world.map).deliberated().decision.mint
     except InfeasibleError:
         return None
     if mint is None:

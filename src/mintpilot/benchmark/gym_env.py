@@ -22,7 +22,7 @@ import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
 
-from mintpilot.assembly.crews import Choices, scripted_operator, thinking_parts
+from mintpilot.assembly.components import Choices, deliberation_parts, scripted_operator
 from mintpilot.assembly.worlds import World
 from mintpilot.benchmark.conditions import true_world
 from mintpilot.benchmark.experiment import Cell, Prices
@@ -30,11 +30,11 @@ from mintpilot.benchmark.gym_entry import register
 from mintpilot.core.errors import InfeasibleError
 from mintpilot.core.gap import GapKind, KnowledgeGap
 from mintpilot.core.plan import Plan
+from mintpilot.core.ports import Ask
 from mintpilot.core.tree import LeafReason, Mint, Node, ScoredQuery
-from mintpilot.elicitation.wording import word_question
-from mintpilot.mission.mind import Mind, Thinking, Thought, learn, think
+from mintpilot.mission.deliberation import Deliberation, DeliberationParts
+from mintpilot.mission.rehearsal import Rehearsal, begin
 from mintpilot.mission_file.schema import OperatorSpec
-from mintpilot.reasoning.belief import prior_belief
 from mintpilot.reasoning.classes import demands
 from mintpilot.strategies.exhaustive import best_about
 from mintpilot.strategies.flying import best_safe_plan, tree_of
@@ -124,11 +124,11 @@ class ElicitationEnv(gymnasium.Env[Observation, np.int64]):
     def _begin(self, world: World) -> None:
         asking = replace(world.mission.asking, answer_error=self._error)
         self._world = replace(world, mission=replace(world.mission, asking=asking))
-        self._parts: Thinking = thinking_parts(self._world, Choices())
+        self._parts: DeliberationParts = deliberation_parts(self._world, Choices())
         person = OperatorSpec(answer_error=self._error)
         self._operator = scripted_operator(self._world, person)
         self._questions = 0
-        self._think(Mind(map=world.map, belief=prior_belief(())))
+        self._think(begin(self._parts, world.map))
         if self._mint.root.leaf is LeafReason.INFEASIBLE:
             raise InfeasibleError(
                 f"world {world.seed}: nothing can be flown, whatever the answers are; draw another one"
@@ -136,11 +136,9 @@ class ElicitationEnv(gymnasium.Env[Observation, np.int64]):
         self._gaps: tuple[KnowledgeGap, ...] = self._thought.findings.gaps
         self._truth = {gap.id: world.truth.value_of(gap) for gap in self._gaps}
 
-    def _think(self, mind: Mind) -> None:
-        mission = self._world.mission
-        self._thought: Thought = think(
-            mind, self._parts, start_m=mission.start_m, endurance_s=mission.limits.endurance_s
-        )
+    def _think(self, moment: Rehearsal) -> None:
+        self._moment = moment
+        self._thought: Deliberation = moment.deliberated()
         self._mint: Mint = tree_of(self._thought.situation)
 
     def _ask(self, index: int) -> bool:
@@ -149,14 +147,14 @@ class ElicitationEnv(gymnasium.Env[Observation, np.int64]):
         if scored is None:
             self._line = "asked about nothing that is open"
             return True
-        query = scored.query
-        spoken_of = tuple(gap for gap in self._thought.findings.gaps if gap.id in query.gap_ids)
-        question = word_question(query, spoken_of, self._mint)
-        answer = self._operator.ask(question, self._world.mission.asking.patience_s)
-        said = query.part_words(answer.part) if answer.part is not None else answer.reply.value
+        put = self._moment.asked(replace(self._thought, decision=Ask(scored=scored, mint=self._mint)))
+        question = put.question
+        assert question is not None
+        answer = self._operator.answer(question, self._world.mission.asking.patience_s)
+        said = question.query.part_words(answer.part) if answer.part is not None else answer.reply.value
         self._line = f"{question.text} {said}"
         try:
-            self._think(learn(self._thought.mind, query, answer, self._parts.settings).mind)
+            self._think(put.answered(answer))
         except InfeasibleError:
             return False
         return True

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from mintpilot.assembly.crews import Choices, thinking_parts
+from mintpilot.assembly.components import Choices, deliberation_parts
 from mintpilot.assembly.worlds import World
 from mintpilot.benchmark.records import GapTruth, WorldRecord
 from mintpilot.benchmark.warm import WarmPlanner
@@ -15,8 +15,8 @@ from mintpilot.core.plan import Plan
 from mintpilot.core.ports import Ask, PlanSpace
 from mintpilot.core.tree import Node
 from mintpilot.elicitation.objectives.optimal import Optimal
-from mintpilot.mission.mind import Mind, Thinking, Thought, think
-from mintpilot.reasoning.belief import prior_belief
+from mintpilot.mission.deliberation import Deliberation, DeliberationParts
+from mintpilot.mission.rehearsal import begin
 
 PERSON_M = 0.3
 """Half the edge of a person's mark in pictures."""
@@ -33,7 +33,7 @@ def survey_world(world: World, *, experiment: str, cell: str, planner: WarmPlann
         cell: name for the record.
         planner: shares plans with the missions in this world.
     """
-    parts = thinking_parts(world, Choices())
+    parts = deliberation_parts(world, Choices())
     if planner is not None:
         parts = replace(parts, planner=planner)
     (x0, y0, _), (x1, y1, _) = world.scene.volume.lo_m, world.scene.volume.hi_m
@@ -96,12 +96,11 @@ def mattered(gap: KnowledgeGap, given: Assumptions, space: PlanSpace, settings: 
     return max(costs) - min(costs) > settings.delta_c_s
 
 
-def _thought(world: World, parts: Thinking) -> Thought:
-    start, endurance = world.mission.start_m, world.mission.limits.endurance_s
-    return think(Mind(map=world.map, belief=prior_belief(())), parts, start_m=start, endurance_s=endurance)
+def _thought(world: World, parts: DeliberationParts) -> Deliberation:
+    return begin(parts, world.map).deliberated()
 
 
-def _least_questions(world: World, parts: Thinking) -> float | None:
+def _least_questions(world: World, parts: DeliberationParts) -> float | None:
     """Expected questions of the exact programme at the first deliberation."""
     try:
         decision = _thought(world, replace(parts, objective=Optimal(MAX_STATES))).decision

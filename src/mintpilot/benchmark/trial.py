@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import time
 import traceback
-from collections.abc import Callable
 from dataclasses import replace
 
-from mintpilot.assembly.crews import Choices, VehicleChoice, crew_for, scripted_operator
+from mintpilot.assembly.components import Choices, VehicleChoice, components_for, scripted_operator
 from mintpilot.assembly.strategies import make_strategy
 from mintpilot.assembly.talk import talk_for
 from mintpilot.assembly.worlds import World
@@ -20,8 +19,8 @@ from mintpilot.benchmark.shared_survey import SharedSurvey
 from mintpilot.benchmark.tally import Tally
 from mintpilot.core.mission import Outcome, Verdict
 from mintpilot.core.ports import Planner
-from mintpilot.core.semantic_map import SemanticMap
-from mintpilot.mission.loop import Crew, fly_mission
+from mintpilot.mission.components import MissionComponents
+from mintpilot.mission.loop import fly_mission
 from mintpilot.mission_file.schema import LanguageSpec, OperatorSpec
 
 RAISED = "raised"
@@ -134,22 +133,19 @@ class _Flight:
         choices = Choices(strategy="mint", vehicle=VehicleChoice(experiment.vehicle))
         operator = scripted_operator(world, person)
         talk = talk_for(LanguageSpec(), llm=experiment.llm)
-        with crew_for(world, choices, operator=operator, recorder=tally, talk=talk) as crew:
-            made = make_strategy(method.strategy, seed=world.seed, arguments=method.arguments)
-            thinking = replace(crew.thinking, strategy=made)
+        with components_for(world, choices, operators=(operator,), recorder=tally, talk=talk) as made:
+            strategy = make_strategy(method.strategy, seed=world.seed, arguments=method.arguments)
+            parts = replace(made.parts, strategy=strategy)
             if planner is not None:
-                thinking = replace(thinking, planner=planner)
-            named = replace(crew, thinking=thinking, strategy_name=method.name, survey=self._timed(crew, survey))
-            verdict = fly_mission(named)
-            self._ended_s = crew.vehicle.state().time_s
+                parts = replace(parts, planner=planner)
+            named = replace(made, parts=parts, strategy_name=method.name)
+            verdict = fly_mission(self._timed(named if survey is None else survey.shared(named)))
+            self._ended_s = made.vehicle.state().time_s
         return verdict
 
-    def _timed(self, crew: Crew, shared: SharedSurvey | None) -> Callable[[], SemanticMap]:
-        make = crew.survey if shared is None else shared.survey_of(crew)
+    def _timed(self, components: MissionComponents) -> MissionComponents:
+        def begin_task() -> None:
+            components.begin_task()
+            self._begun_s = self._ended_s = components.vehicle.state().time_s
 
-        def survey() -> SemanticMap:
-            first = make()
-            self._begun_s = self._ended_s = crew.vehicle.state().time_s
-            return first
-
-        return survey
+        return replace(components, begin_task=begin_task)

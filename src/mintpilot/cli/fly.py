@@ -101,7 +101,9 @@ def _operator(choice: str | None, console: Console, narrator: Narrator) -> Calla
     from mintpilot.interaction.terminal import TerminalOperator
 
     def made(talk: Talk) -> Operator:
-        person = TerminalOperator(console, sys.stdin, understand=talk.understand, lang=talk.lang)
+        person = TerminalOperator(
+            console, sys.stdin, understand=talk.understand, order_of=talk.order_of, lang=talk.lang
+        )
         return Attended(person, narrator)
 
     return made

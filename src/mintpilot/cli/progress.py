@@ -20,10 +20,12 @@ from mintpilot.core.events import (
     MissionEnded,
     MissionStarted,
     Noticed,
+    OrderTaken,
     PlanChosen,
 )
-from mintpilot.core.ports import BetterWords, Operator
-from mintpilot.core.query import Answer, Question
+from mintpilot.core.inputs import OperatorInput
+from mintpilot.core.ports import Operator
+from mintpilot.core.query import Question
 
 
 class LenientConsole(Console):
@@ -97,22 +99,36 @@ class Narrator:
 
 
 class Attended(Operator):
-    """An operator at the same terminal: the moving line rests while the person is asked."""
+    """An operator at the same terminal: the moving line rests while the person is asked, and comes back afterwards."""
 
     def __init__(self, operator: Operator, narrator: Narrator) -> None:
         self._operator = operator
         self._narrator = narrator
 
-    def ask(self, question: Question, patience_s: float, better: BetterWords | None = None) -> Answer:
+    @property
+    def attended(self) -> bool:
+        """As the operator inside."""
+        return self._operator.attended
+
+    def show(self, question: Question, patience_s: float) -> None:
         """As the operator inside."""
         self._narrator.rest()
-        return self._operator.ask(question, patience_s, better)
+        self._operator.show(question, patience_s)
+
+    def withdraw(self, question: str, why: str) -> None:
+        """As the operator inside."""
+        self._narrator.rest()
+        self._operator.withdraw(question, why)
 
     def tell(self, text: str) -> None:
         """As the operator inside; what the narrator has just said on the same screen is not said again."""
         self._narrator.rest()
         if text != self._narrator.noticed:
             self._operator.tell(text)
+
+    def poll(self, time_s: float) -> tuple[OperatorInput, ...]:
+        """As the operator inside."""
+        return self._operator.poll(time_s)
 
 
 def told(event: Event) -> tuple[str, str]:
@@ -144,6 +160,8 @@ def told(event: Event) -> tuple[str, str]:
         return "", "surveying"
     if isinstance(event, LegFlown):
         return f"Flown ({event.phase}): {event.stop_id}, {event.log.end.value}.", ""
+    if isinstance(event, OrderTaken):
+        return f"Order: {event.order.value}. {event.answer}", ""
     if isinstance(event, Noticed):
         return f"Noticed: {event.text}", ""
     if isinstance(event, MissionEnded):

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from mintpilot.cli.exits import ExitCode
 
 if TYPE_CHECKING:
-    from mintpilot.assembly.deliberation import DeliberationReport, GapReport
+    from mintpilot.assembly.deliberation_report import DeliberationReport, GapReport
 
 
 def think(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import cache
 
-from mintpilot.assembly.crews import Choices, VehicleChoice, crew_for, scripted_operator
+from mintpilot.assembly.components import Choices, VehicleChoice, components_for, scripted_operator
 from mintpilot.conformance.sample import sample_world
 from mintpilot.core.errors import ConformanceError
 from mintpilot.core.events import Event, MissionEnded, Noticed, Timed
@@ -48,7 +48,7 @@ def sample_events() -> tuple[Event, ...]:
     world, kept = sample_world(), _Kept()
     choices = Choices(vehicle=VehicleChoice.KINEMATIC)
     operator = scripted_operator(world, OperatorSpec())
-    with crew_for(world, choices, operator=operator, recorder=kept) as crew:
+    with components_for(world, choices, operators=(operator,), recorder=kept) as crew:
         fly_mission(crew)
     return tuple(kept.events)
 

@@ -12,10 +12,10 @@ from mintpilot.assembly.registry import load
 from mintpilot.conformance.sample import require, sample_world
 from mintpilot.core.gap import GapKind, KnowledgeGap
 from mintpilot.core.mission import AskingSettings
-from mintpilot.core.ports import Ask, Fly, QueryObjective, QuerySituation, Strategy
-from mintpilot.core.query import Answer, Reply, answer_for
-from mintpilot.mission.mind import Mind, Thinking, Thought, learn, think
-from mintpilot.reasoning.belief import prior_belief
+from mintpilot.core.ports import Fly, QueryObjective, QuerySituation, Strategy
+from mintpilot.core.query import Answer, Query, Reply, answer_for
+from mintpilot.mission.deliberation import Deliberation, DeliberationParts
+from mintpilot.mission.rehearsal import Rehearsal, begin
 
 _BUDGET = 8
 _ENDURANCE_S = 120.0
@@ -31,14 +31,14 @@ def check_strategy(make: Callable[[], Strategy]) -> None:
         ConformanceError: it breaks the contract of `mintpilot.core.ports.Strategy`.
     """
     settings = replace(sample_world().mission.asking, max_questions=_BUDGET)
-    gaps = _think(Mind(map=sample_world().map, belief=prior_belief(())), make(), settings).findings.gaps
+    gaps = _begin(make(), settings).deliberated().findings.gaps
     asked = [list(_play(make(), truth, settings)) for truth in _truths(gaps)]
     again = list(_play(make(), next(_truths(gaps)), settings))
     rule = f"asked {asked[0]} and then {again} under the same truth; the same seed must give the same questions"
     require(asked[0] == again, make(), rule)
     _check_silence(make(), settings)
     _check_doubt(make(), settings)
-    first = _think(Mind(map=sample_world().map, belief=prior_belief(())), make(), replace(settings, max_questions=0))
+    first = _begin(make(), replace(settings, max_questions=0)).deliberated()
     require(isinstance(first.decision, Fly), make(), "it asks though the budget is 0 questions; it must fly, or stay")
 
 
@@ -100,64 +100,67 @@ def _truths(gaps: tuple[KnowledgeGap, ...]) -> Iterator[Mapping[str, str]]:
 
 def _play(strategy: Strategy, truth: Mapping[str, str], settings: AskingSettings) -> Iterator[str]:
     """The questions of one mission under that truth, up to the decision to fly."""
-    mind = Mind(map=sample_world().map, belief=prior_belief(()))
+    moment = _begin(strategy, settings)
     for asked in itertools.count():
-        thought = _think(mind, strategy, settings)
-        if isinstance(thought.decision, Fly):
-            _check_flight(thought, thought.decision, strategy)
+        found = moment.deliberated()
+        if isinstance(found.decision, Fly):
+            _check_flight(found, found.decision, strategy)
             return
         require(asked < _BUDGET, strategy, f"it asks on after {asked} questions, the whole budget")
-        mind = _answered(thought, thought.decision, strategy, truth, settings)
-        yield thought.decision.scored.query.id
+        query = found.decision.scored.query
+        _check_query(query, found, strategy)
+        moment = moment.asked(found).answered(answer_for(query, query.part_of(truth)))
+        yield query.id
 
 
-def _answered(
-    thought: Thought, ask: Ask, strategy: Strategy, truth: Mapping[str, str], settings: AskingSettings
-) -> Mind:
-    query = ask.scored.query
-    open_gaps = {gap.id for gap in thought.findings.gaps}
+def _check_query(query: Query, found: Deliberation, strategy: Strategy) -> None:
+    open_gaps = {gap.id for gap in found.findings.gaps}
     closed = sorted(set(query.gap_ids) - open_gaps)
     require(not closed, strategy, f"it asks about {closed}, which are no open gaps ({sorted(open_gaps)})")
-    repeated = query.id in {earlier.query.id for earlier in thought.mind.asked}
+    repeated = query.id in {earlier.query.id for earlier in found.state.asked}
     require(not repeated, strategy, f"it asks '{query.id}' again, though the answer is known")
-    return learn(thought.mind, query, answer_for(query, query.part_of(truth)), settings).mind
 
 
-def _check_flight(thought: Thought, fly: Fly, strategy: Strategy) -> None:
+def _check_flight(found: Deliberation, fly: Fly, strategy: Strategy) -> None:
     if fly.plan is None or fly.unsafe:
         return
-    kinds = {gap.id: gap.kind for gap in thought.findings.gaps}
+    kinds = {gap.id: gap.kind for gap in found.findings.gaps}
     entered = sorted(gap for gap in fly.plan.enters if kinds.get(gap) is GapKind.OBSTACLE)
     require(not entered, strategy, f"it flies into {entered}, not known to be passable, without saying `unsafe`")
 
 
 def _check_silence(strategy: Strategy, settings: AskingSettings) -> None:
-    mind = Mind(map=sample_world().map, belief=prior_belief(()), silent=True)
-    decision = _think(mind, strategy, settings).decision
-    require(isinstance(decision, Fly), strategy, "it asks though nobody answers; after a time-out it must fly, or stay")
+    moment = _begin(strategy, settings)
+    found = moment.deliberated()
+    if isinstance(found.decision, Fly):
+        return
+    silent = moment.asked(found).answered(Answer(reply=Reply.TIMEOUT, latency_s=0.0))
+    asks = not isinstance(silent.deliberated().decision, Fly)
+    require(not asks, strategy, "it asks though nobody answers; after a time-out it must fly, or stay")
 
 
 def _check_doubt(strategy: Strategy, settings: AskingSettings) -> None:
     """Nobody knows anything: each query may be put once, and the asking must end."""
-    mind = Mind(map=sample_world().map, belief=prior_belief(()))
+    moment, unsure = _begin(strategy, settings), Answer(reply=Reply.UNSURE, latency_s=0.0)
     for _ in range(2 * _BUDGET):
-        decision = _think(mind, strategy, settings).decision
-        if isinstance(decision, Fly):
+        found = moment.deliberated()
+        if isinstance(found.decision, Fly):
             return
-        query = decision.scored.query
-        again = query.id in mind.withdrawn
+        query = found.decision.scored.query
+        again = query.id in found.state.withdrawn
         require(not again, strategy, f"it asks '{query.id}' again, which was answered 'I do not know'")
-        mind = learn(mind, query, Answer(reply=Reply.UNSURE, latency_s=0.0), settings).mind
+        moment = moment.asked(found).answered(unsure)
 
 
-def _think(mind: Mind, strategy: Strategy, settings: AskingSettings) -> Thought:
+def _begin(strategy: Strategy, settings: AskingSettings) -> Rehearsal:
     world = sample_world()
-    parts = Thinking(
-        mission=replace(world.mission, asking=settings),
+    limits = replace(world.mission.limits, endurance_s=_ENDURANCE_S)
+    parts = DeliberationParts(
+        mission=replace(world.mission, asking=settings, limits=limits),
         task=world.task,
         planner=load("planner", "grid")(),
         strategy=strategy,
         metric=load("metric", settings.impact_metric)(),
         objective=load("objective", settings.objective)(),
     )
-    return think(mind, parts, start_m=world.mission.start_m, endurance_s=_ENDURANCE_S)
+    return begin(parts, world.map)

@@ -5,11 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TypeAlias
 
-from mintpilot.core.gap import KnowledgeGap
+from mintpilot.core.gap import CorrelationGroup, KnowledgeGap
+from mintpilot.core.inputs import Input
 from mintpilot.core.mission import Mission, Verdict
 from mintpilot.core.observation import Detection, Frame
-from mintpilot.core.plan import Plan, PlanningProblem
-from mintpilot.core.query import Answer, Question
+from mintpilot.core.plan import Plan
+from mintpilot.core.query import Answer, Order, Question
 from mintpilot.core.semantic_map import SemanticMap
 from mintpilot.core.task import Task
 from mintpilot.core.trajectory import FlightLog, Trajectory
@@ -28,6 +29,14 @@ class MissionStarted:
     """In which questions are asked."""
     language_model: str = "template"
     """Who words them: a registered name; ``template``: no model."""
+    groups: tuple[CorrelationGroup, ...] = ()
+    """Gaps whose priors do not multiply."""
+    planner: str = "grid"
+    """Registered name of the planner."""
+    simulated: bool = False
+    """Whether it is flown in a simulator."""
+    surveys: bool = False
+    """Whether the first map is made by a survey flight."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -53,7 +62,6 @@ class Deliberated:
 
     round: int
     gaps: tuple[KnowledgeGap, ...]
-    problem: PlanningProblem
     mint: Mint | None
     """None for strategies that build no tree."""
     chosen: ScoredQuery | None
@@ -97,10 +105,35 @@ class LegFlown:
     """One trajectory was flown, to its end or not."""
 
     phase: str
-    """``survey``, ``mission`` or ``return``."""
+    """``survey``, ``mission``, ``retreat``, ``return`` or ``landing``."""
     stop_id: str
     trajectory: Trajectory
     log: FlightLog
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class OrderTaken:
+    """An operator gave an order, and what the drone does then was said."""
+
+    order: Order
+    operator: str
+    text: str
+    """As it was given."""
+    answer: str
+    """What the drone said that it does."""
+    time_s: float
+    """Mission clock."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Stepped:
+    """One step of the mission: what happened, and a digest of what it made the mission do."""
+
+    input: Input
+    directives: tuple[str, ...]
+    """Names of the directives, in order."""
+    digest: str
+    """Of the directives with all that they hold."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -137,6 +170,8 @@ Event: TypeAlias = (
     | Asked
     | PlanChosen
     | LegFlown
+    | OrderTaken
+    | Stepped
     | Noticed
     | Timed
     | MissionEnded

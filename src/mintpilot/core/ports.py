@@ -12,11 +12,13 @@ from typing import Protocol, TypeAlias
 from mintpilot.core.events import Event
 from mintpilot.core.gap import Assumptions, Belief, KnowledgeGap
 from mintpilot.core.geometry import Floats, Ints, SmallInts
+from mintpilot.core.inputs import MotionEnded, OperatorInput
 from mintpilot.core.mission import AskingSettings, Verdict
+from mintpilot.core.motion import Motion
 from mintpilot.core.observation import Detection, Frame
-from mintpilot.core.plan import Plan, PlanningProblem, Stop
-from mintpilot.core.query import Answer, Evidence, Meaning, Query, Question
-from mintpilot.core.trajectory import FlightLog, Trajectory, VehicleState
+from mintpilot.core.plan import Plan, PlanningProblem
+from mintpilot.core.query import Evidence, Meaning, Query, Question
+from mintpilot.core.trajectory import VehicleState
 from mintpilot.core.tree import Certificate, Mint, ScoredQuery
 
 
@@ -181,40 +183,40 @@ class Strategy(Protocol):
         ...
 
 
-SPEAKING_S = 1.2
-"""Seconds that whoever speaks may wait for better words: a question must be out 1.5 s after its query was chosen."""
-
-
-class BetterWords(Protocol):
-    """Other words for a question, made while its own are already there to be shown. They mean the very same query."""
+class Operator(Protocol):
+    """The person who knows: a terminal, a web page, a voice, or a script. No method blocks; several may be attached."""
 
     @property
-    def done(self) -> bool:
-        """True when there is nothing left to wait for: they are here, or will never be."""
+    def attended(self) -> bool:
+        """True where a person sits: simulators then run at the speed of the clock on the wall."""
         ...
 
-    def wait(self, timeout_s: float) -> Question | None:
-        """The question in better words, after at most ``timeout_s`` seconds; None while there are none. No errors."""
-        ...
-
-
-class Operator(Protocol):
-    """The person who knows. May be a terminal, a web page, a voice, or a script."""
-
-    def ask(self, question: Question, patience_s: float, better: BetterWords | None = None) -> Answer:
-        """Shows or says the question and waits at most ``patience_s`` seconds; silence is `Reply.TIMEOUT`.
+    def show(self, question: Question, patience_s: float) -> None:
+        """Shows or says the question, with the consequences of each reply. The same id again: in better words.
 
         Args:
-            question: with the consequences of Yes and of No, which always stand beside the words.
-            patience_s: how long an answer is waited for, seconds.
-            better: other words that may be ready a little later. A screen shows the question at once and these when
-                they come; a voice may wait for them, `SPEAKING_S` at most. `Answer.better_s` says when they were
-                used. Given only where a language model is at work; they may be left alone.
+            question: its id is given back with the answer.
+            patience_s: how long an answer is waited for from when it is shown, seconds.
         """
+        ...
+
+    def withdraw(self, question: str, why: str) -> None:
+        """The question with that id is no longer open; ``why`` is a plain sentence. Unknown ids are nothing to do."""
         ...
 
     def tell(self, text: str) -> None:
         """Shows or says something that needs no answer."""
+        ...
+
+    def poll(self, time_s: float) -> tuple[OperatorInput, ...]:
+        """What came since the last call: questions shown, answers, orders; oldest first.
+
+        Args:
+            time_s: the mission clock. What is brought carries times up to this one.
+
+        Raises:
+            DeviceError: nobody can be reached through it any more.
+        """
         ...
 
 
@@ -230,31 +232,36 @@ class TruthOracle(Protocol):
         ...
 
 
-Watch: TypeAlias = Callable[[VehicleState], bool]
-"""Called at the camera's rate while flying; returning True asks for a stop."""
-
-
 class Vehicle(Protocol):
-    """Flies. A simulator or a link to an autopilot."""
+    """Flies. A simulator or a link to an autopilot. It makes one motion at a time and hovers where it has none."""
 
     def state(self) -> VehicleState:
         """Where it is now."""
         ...
 
-    def follow(self, trajectory: Trajectory, watch: Watch | None = None) -> FlightLog:
-        """Flies the trajectory, which starts where the vehicle is; returns when it hovers at the end, or has stopped.
+    def command(self, motion: Motion) -> None:
+        """Begins a motion. The vehicle must be at rest; the end of the motion is told by `advance`, always."""
+        ...
+
+    def brake(self) -> None:
+        """Brakes along the checked path and hovers; the motion then ends as stopped. Without a motion: nothing."""
+        ...
+
+    def advance(self, until_s: float) -> tuple[MotionEnded, ...]:
+        """Lets time pass, at most up to that moment of its clock; less when a motion ends before.
+
+        A simulator computes so far, a real vehicle waits. Nobody is called back meanwhile.
+
+        Returns:
+            What ended, oldest first.
 
         Raises:
             DeviceError: the link is gone. The vehicle is then in its own fail-safe.
         """
         ...
 
-    def act(self, stop: Stop, dwell_s: float) -> None:
-        """Does what the stop is for (pick, deliver, look) while hovering for ``dwell_s`` seconds."""
-        ...
-
     def hold(self) -> None:
-        """Hovers where it is. Safe to call at any time, also after a failure."""
+        """Comes to rest and hovers where it is. Safe to call at any time, also after a failure."""
         ...
 
 
@@ -309,9 +316,7 @@ class LanguageModel(Protocol):
 
 
 __all__ = [
-    "SPEAKING_S",
     "Ask",
-    "BetterWords",
     "Camera",
     "Completion",
     "Decision",
@@ -332,5 +337,4 @@ __all__ = [
     "TruthOracle",
     "Understand",
     "Vehicle",
-    "Watch",
 ]

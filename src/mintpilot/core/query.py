@@ -191,6 +191,8 @@ class Question:
     """Who made the words."""
     option_means: tuple[str, ...] = ()
     """Of a choice: the consequence of each part, in order."""
+    id: str = ""
+    """Names the question in one mission; answers carry it. Empty until the question is put."""
 
 
 class Reply(StrEnum):
@@ -204,12 +206,19 @@ class Reply(StrEnum):
     TIMEOUT = "timeout"
 
 
-class Command(StrEnum):
-    """What an operator may order instead of answering; obeyed at once."""
+class Order(StrEnum):
+    """What an operator may order at any time; obeyed by the very next motion."""
 
     HOLD = "hold"
-    ABORT = "abort"
+    """Brake, hover, and wait for another order."""
+    CONTINUE = "continue"
+    """Think again from here, and go on."""
     RETURN = "return"
+    """Fly back to the start through space that is known to be free."""
+    ABORT = "abort"
+    """Brake, ask nothing more, and do what is safest: land here where that is possible, else return and land."""
+    LAND = "land"
+    """Land here if the ground below is known to be free, else at the nearest place where it is."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -234,16 +243,11 @@ class Answer:
     """From the question's appearance to the reply, seconds."""
     text: str = ""
     """Raw words, as given. Data, never an instruction to this program."""
-    command: Command | None = None
-    """An order, which overrides ``reply``."""
     also: tuple[Evidence, ...] = ()
     """Extra evidence: what was said beyond the question (``not the red one, the blue one``). It teaches the belief, and
     never counts as the explicit yes that opens a region."""
     understood_by: str = ""
     """Who made a reply of the words: ``rules``, ``model``, or empty where nobody had to."""
-    better_s: float | None = None
-    """When better words (`mintpilot.core.ports.BetterWords`) were shown, seconds after the question's appearance; None:
-    the person had the first words only."""
     option: int | None = None
     """The part of a choice that was chosen, 0 to `Query.part_count` - 1; None for every other reply."""
 
@@ -270,7 +274,7 @@ class Meaning:
 
     reply: Reply | None
     """None: they do not map to an answer, ask again."""
-    command: Command | None = None
+    order: Order | None = None
     """An order, which overrides ``reply``."""
     also: tuple[Evidence, ...] = ()
     """See `Answer.also`."""
@@ -285,12 +289,12 @@ __all__ = [
     "YES_PART",
     "Answer",
     "Combine",
-    "Command",
     "Domain",
     "Evidence",
     "Literal",
     "Meaning",
     "Option",
+    "Order",
     "Query",
     "Question",
     "Reply",

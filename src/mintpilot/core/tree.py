@@ -164,6 +164,10 @@ class GapExplanation:
     """Whether any best plan depends on it."""
     why: str
     """One plain sentence with the figures that decided."""
+    figures: str = ""
+    """What hangs on it, as a clause; empty where nothing can be flown whatever it is."""
+    set_aside: str = ""
+    """Why it was left alone where no plan depends on it; follows the figures."""
     cost_if_favourable_s: float | None = None
     """Cost of the best plan if the gap has its best value (for obstacle gaps: passable), seconds."""
     cost_if_unfavourable_s: float | None = None

@@ -31,7 +31,8 @@ class ScreenWords:
     """Answers words that were not understood; says what may be said."""
     given_up: str
     """The same the second time."""
-    silence: str
+    nothing_asked: str
+    """Answers a line that is no order while nothing is asked."""
 
 
 WORDS: Mapping[str, ScreenWords] = MappingProxyType(
@@ -49,7 +50,7 @@ WORDS: Mapping[str, ScreenWords] = MappingProxyType(
             repeat="I do not understand. Please say yes, no or don't know (y, n, ?), what is the case, or an order: "
             "hold, return, abort.",
             given_up="I do not understand: I take it as 'don't know'.",
-            silence="No answer: going on the careful way.",
+            nothing_asked="Nothing is asked now. Orders: hold, continue, return, land, abort.",
         ),
         "de": ScreenWords(
             asks="Die Drohne fragt",
@@ -64,7 +65,7 @@ WORDS: Mapping[str, ScreenWords] = MappingProxyType(
             repeat="Das habe ich nicht verstanden. Bitte: ja, nein, weiß nicht (?), oder ein Befehl: halt, zurück, "
             "abbrechen.",
             given_up="Das habe ich nicht verstanden: es gilt als „weiß nicht“.",
-            silence="Keine Antwort: es geht den vorsichtigen Weg weiter.",
+            nothing_asked="Gerade wird nichts gefragt. Befehle: halt, weiter, zurück, landen, abbrechen.",
         ),
         "fr": ScreenWords(
             asks="Le drone demande",
@@ -78,7 +79,7 @@ WORDS: Mapping[str, ScreenWords] = MappingProxyType(
             better="La même chose en d'autres mots :",
             repeat="Je n'ai pas compris. Dites : oui, non, je ne sais pas (?), ou un ordre : stop, reviens, annule.",
             given_up="Je n'ai pas compris : cela compte comme « je ne sais pas ».",
-            silence="Pas de réponse : le chemin prudent est pris.",
+            nothing_asked="Rien n'est demandé. Ordres : stop, continue, reviens, atterris, annule.",
         ),
         "es": ScreenWords(
             asks="El dron pregunta",
@@ -92,7 +93,7 @@ WORDS: Mapping[str, ScreenWords] = MappingProxyType(
             better="Lo mismo con otras palabras:",
             repeat="No he entendido. Diga: sí, no, no sé (?), o una orden: alto, vuelve, cancela.",
             given_up="No he entendido: cuenta como «no sé».",
-            silence="Sin respuesta: sigue por el camino prudente.",
+            nothing_asked="No se pregunta nada ahora. Órdenes: alto, sigue, vuelve, aterriza, cancela.",
         ),
     }
 )

@@ -5,25 +5,28 @@ from __future__ import annotations
 import os
 import select
 import termios
-import time
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import TimeoutError as NotYet
+from dataclasses import dataclass
 from typing import Protocol
 
 from rich.console import Console, Group
 from rich.text import Text
 
 from mintpilot.core.errors import DeviceError
-from mintpilot.core.ports import BetterWords, Operator, Understand
-from mintpilot.core.query import Answer, Question, Reply
+from mintpilot.core.inputs import Answered, OperatorInput, Ordered, QuestionShown
+from mintpilot.core.ports import Operator, Understand
+from mintpilot.core.query import Answer, Meaning, Order, Question, Reply
 from mintpilot.interaction.screen_words import screen_words
 
 _LONGEST_LINE = 4096
 """Bytes; what is typed beyond them without a line's end is thrown away."""
 _KEYS = 18
 """Columns for what may be typed."""
-_GLANCE_S = 0.05
-"""While better words may come, it is looked for them so often."""
+_AT_ONCE_S = 0.05
+"""Words that are understood within this time are answered in the same poll, seconds."""
+NAME = "terminal"
 
 
 class Readable(Protocol):
@@ -38,18 +41,14 @@ class Readable(Protocol):
 class _Turn:
     """One question while it is open."""
 
-    started_s: float
+    question: Question
     patience_s: float
-    better: BetterWords | None
-    better_s: float | None = field(default=None, init=False)
-
-    @property
-    def deadline_s(self) -> float:
-        return self.started_s + self.patience_s
+    shown_s: float | None = None
+    asked_again: bool = False
 
 
 class TerminalOperator(Operator):
-    """Asks the person at a terminal, and never waits longer than it was told.
+    """Asks the person at a terminal and hears orders at any time; never waits.
 
     Keys typed before a question was shown do not answer it. Lines that were piped in are kept: one for each question.
     Ctrl-C raises `KeyboardInterrupt` at once, for the caller to end the mission tidily.
@@ -57,9 +56,9 @@ class TerminalOperator(Operator):
     Args:
         console: where the question is shown; without a terminal plain text is written, no control codes.
         stdin: where the reply is read from, by its file descriptor (nothing else may read from it meanwhile).
-        understand: what typed words mean.
+        understand: what typed words mean as an answer; it may take its time.
+        order_of: the order that a line is, where nothing is asked; None: it is none.
         lang: of what stands around the questions.
-        clock: seconds, never going back.
 
     Raises:
         DeviceError: ``stdin`` has no file descriptor to read from.
@@ -72,8 +71,8 @@ class TerminalOperator(Operator):
         stdin: Readable,
         *,
         understand: Understand,
+        order_of: Callable[[str], Order | None],
         lang: str = "en",
-        clock: Callable[[], float] = time.monotonic,
     ) -> None:
         try:
             self._fd = stdin.fileno()
@@ -83,54 +82,112 @@ class TerminalOperator(Operator):
                 "use the scripted operator where nobody is there"
             ) from error
         self._console = console
-        self._understand = understand
+        self._understand, self._order_of = understand, order_of
         self._words = screen_words(lang)
-        self._clock = clock
         self._pending = b""
         self._ended = False
+        self._turn: _Turn | None = None
+        self._understanding: tuple[str, str, Future[Meaning]] | None = None
+        self._pool = ThreadPoolExecutor(1, thread_name_prefix="mintpilot understanding")
 
-    def ask(self, question: Question, patience_s: float, better: BetterWords | None = None) -> Answer:
-        """Shows the question with the consequences of Yes and No, and reads a reply for at most ``patience_s``.
+    @property
+    def attended(self) -> bool:
+        """A person sits here: True where the input is a terminal."""
+        return os.isatty(self._fd)
 
-        Better words are shown below the first ones when they come; the person may answer before. Words that do not map
-        to an answer are asked for again once, within the same patience; then they count as "don't know". An empty line
-        says nothing. The end of the input counts as silence.
-        """
-        self._drop_typed_ahead()
-        turn = _Turn(self._clock(), patience_s, better)
-        self._show(question, patience_s)
-        asked_again = False
-        while True:
-            line = self._read_line(turn)
-            if line is None:
-                self._console.print(Text(self._words.silence, style="yellow"))
-                return self._answer(turn, Reply.TIMEOUT)
-            if line:
-                meaning = self._understand(line, question, max(0.0, turn.deadline_s - self._clock()))
-                said = Answer(
-                    reply=meaning.reply if meaning.reply is not None and meaning.command is None else Reply.UNSURE,
-                    latency_s=self._clock() - turn.started_s,
-                    text=line,
-                    command=meaning.command,
-                    also=meaning.also,
-                    understood_by=meaning.by,
-                    better_s=turn.better_s,
-                )
-                if meaning.reply is not None or meaning.command is not None:
-                    return said
-                if asked_again:
-                    self._console.print(Text(self._words.given_up, style="yellow"))
-                    return said
-                asked_again = True
-                self._console.print(Text(self._words.repeat, style="yellow"))
-            self._prompt()
+    def show(self, question: Question, patience_s: float) -> None:
+        """Shows the question with the consequences of Yes and No; better words are shown below the first ones."""
+        turn = self._turn
+        if turn is not None and turn.question.id == question.id:
+            turn.question = question
+            said = Text(self._words.better, style="bold cyan")
+            self._console.print(Group(Text(), said, *self._question_lines(question)))
+        else:
+            self._drop_typed_ahead()
+            self._turn = _Turn(question, patience_s)
+            self._show(question, patience_s)
+        self._prompt()
+
+    def withdraw(self, question: str, why: str) -> None:
+        """The question is no longer open; where it was not answered here, that is said."""
+        turn, self._turn = self._turn, None
+        if turn is None:
+            return
+        if turn.question.id != question:
+            self._turn = turn
+            return
+        self._pending = self._pending[: self._pending.rfind(b"\n") + 1]  # half a word answers no later question
+        self._console.print(Text(f"({_printable(why)})", style="yellow"))
 
     def tell(self, text: str) -> None:
         """Prints one message."""
         self._console.print(Text(_printable(text)))
 
-    def _answer(self, turn: _Turn, reply: Reply) -> Answer:
-        return Answer(reply=reply, latency_s=self._clock() - turn.started_s, better_s=turn.better_s)
+    def poll(self, time_s: float) -> tuple[OperatorInput, ...]:
+        """What was typed since the last call.
+
+        Words that do not map to an answer are asked for again once; then they count as "don't know". An empty line
+        says nothing. Where nothing is asked, a line counts if it is an order.
+        """
+        events: list[OperatorInput] = []
+        turn = self._turn
+        if turn is not None and turn.shown_s is None:
+            turn.shown_s = time_s
+            events.append(QuestionShown(time_s=time_s, question=turn.question.id))
+        while self._understanding is None and (line := self._read_line()) is not None:
+            if not line:
+                continue
+            if self._turn is None:
+                events += self._order(line, time_s)
+                continue
+            left_s = max(0.0, self._turn.patience_s - (time_s - (self._turn.shown_s or time_s)))
+            future = self._pool.submit(self._understand, line, self._turn.question, left_s)
+            self._understanding = (self._turn.question.id, line, future)
+            heard = self._heard(time_s, _AT_ONCE_S)
+            events += heard
+            if heard:
+                break
+        events += self._heard(time_s, 0.0)
+        return tuple(events)
+
+    def _order(self, line: str, time_s: float) -> list[OperatorInput]:
+        order = self._order_of(line)
+        if order is None:
+            self._console.print(Text(self._words.nothing_asked, style="yellow"))
+            return []
+        return [Ordered(time_s=time_s, order=order, operator=NAME, text=line)]
+
+    def _heard(self, time_s: float, wait_s: float) -> list[OperatorInput]:
+        """What became of the line that is being understood, if that is known within so many seconds."""
+        if self._understanding is None:
+            return []
+        name, line, future = self._understanding
+        try:
+            meaning = future.result(timeout=wait_s)
+        except NotYet:
+            return []
+        self._understanding = None
+        if meaning.order is not None:
+            return [Ordered(time_s=time_s, order=meaning.order, operator=NAME, text=line)]
+        turn = self._turn
+        if turn is None or turn.question.id != name:
+            turn = None
+        if meaning.reply is None and turn is not None and not turn.asked_again:
+            turn.asked_again = True
+            self._console.print(Text(self._words.repeat, style="yellow"))
+            self._prompt()
+            return []
+        if meaning.reply is None:
+            self._console.print(Text(self._words.given_up, style="yellow"))
+        answer = Answer(
+            reply=Reply.UNSURE if meaning.reply is None else meaning.reply,
+            latency_s=time_s - turn.shown_s if turn is not None and turn.shown_s is not None else 0.0,
+            text=line,
+            also=meaning.also,
+            understood_by=meaning.by,
+        )
+        self._turn = None if turn is not None else self._turn
+        return [Answered(time_s=time_s, question=name, answer=answer, operator=NAME)]
 
     def _show(self, question: Question, patience_s: float) -> None:
         words = self._words
@@ -142,17 +199,6 @@ class TerminalOperator(Operator):
             Text(words.orders.format(f"{patience_s:.0f}"), style="dim"),
         ]
         self._console.print(Group(Text(), *lines))
-        self._prompt()
-
-    def _show_better(self, turn: _Turn) -> None:
-        """Shows better words that have come; the consequences stand beside them again."""
-        question = turn.better.wait(0.0) if turn.better is not None else None
-        turn.better = None
-        if question is not None:
-            turn.better_s = self._clock() - turn.started_s
-            said = Text(self._words.better, style="bold cyan")
-            self._console.print(Group(Text(), said, *self._question_lines(question)))
-            self._prompt()
 
     def _prompt(self) -> None:
         self._console.print(Text(self._words.prompt, style="bold"), end="")
@@ -172,11 +218,10 @@ class TerminalOperator(Operator):
             termios.tcflush(self._fd, termios.TCIFLUSH)
             self._pending = b""
 
-    def _read_line(self, turn: _Turn) -> str | None:
-        """The next line without its end; None when the time is over or the input has ended."""
+    def _read_line(self) -> str | None:
+        """The next line without its end; None where there is none yet, or no more."""
         while b"\n" not in self._pending:
-            if self._ended or not self._wait_for_input(turn):
-                self._pending = b""
+            if self._ended or not select.select([self._fd], [], [], 0)[0]:
                 return None
             try:
                 chunk = os.read(self._fd, 1024)
@@ -184,23 +229,12 @@ class TerminalOperator(Operator):
                 chunk = b""
             if chunk:
                 self._pending = (self._pending + chunk)[-_LONGEST_LINE:]
-            elif self._pending:
+                continue
+            self._ended = True
+            if self._pending:
                 self._pending += b"\n"
-                self._ended = True
-            else:
-                self._ended = True
         line, _, self._pending = self._pending.partition(b"\n")
         return line.decode("utf-8", errors="replace").strip()
-
-    def _wait_for_input(self, turn: _Turn) -> bool:
-        """Whether there is something to read before the time is over; shows better words when they come meanwhile."""
-        while (left_s := turn.deadline_s - self._clock()) > 0:
-            waits = left_s if turn.better is None else min(left_s, _GLANCE_S)
-            if select.select([self._fd], [], [], waits)[0]:
-                return True
-            if turn.better is not None and turn.better.done:
-                self._show_better(turn)
-        return False
 
 
 def _printable(text: str) -> str:

@@ -13,7 +13,7 @@ import re
 from dataclasses import dataclass
 
 from mintpilot.core.gap import ABSENT, BLOCKED, PASSABLE, PRESENT, GapKind
-from mintpilot.core.query import Combine, Command, Literal, Question, Reply
+from mintpilot.core.query import Combine, Literal, Order, Question, Reply
 from mintpilot.language.answer_asides import ACKNOWLEDGED, CUT_OFF
 from mintpilot.language.answer_claims import read_claims
 from mintpilot.language.answer_echo import unechoed
@@ -41,7 +41,7 @@ class Understood:
     """An answer's meaning."""
 
     reading: Reading
-    command: Command | None = None
+    command: Order | None = None
     """For `Reading.COMMAND`."""
     also: Literal | None = None
     """What it says beyond the question: a cut of one of the question's gaps that is answered Yes; None: nothing."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 
-from mintpilot.core.query import Command
+from mintpilot.core.query import Order
 
 YES, NO, UNSURE, COMMAND = "yes", "no", "unsure", "command"
 
@@ -25,10 +25,10 @@ _TABLES: Mapping[str, Mapping[str, str]] = {
         "|ich bin nicht sicher|ich bin mir nicht sicher|bin nicht sicher|schwer zu sagen|kommt darauf an|moment"
         "|einen moment|wie bitte|was|bitte wiederholen|nochmal|noch einmal|ich glaube|ich glaube schon"
         "|ich denke schon|wahrscheinlich|vermutlich|wohl|jein|egal|weiss nicht|ich weiss nicht|ich weiss es nicht",
-        Command.HOLD: "stopp|stop|halt|anhalten|warte|warten|bleib stehen|stehen bleiben|warte dort"
+        Order.HOLD: "stopp|stop|halt|anhalten|warte|warten|bleib stehen|stehen bleiben|warte dort"
         "|sofort anhalten|pause",
-        Command.ABORT: "abbrechen|abbruch|aufhören|brich ab|mission abbrechen|sofort abbrechen",
-        Command.RETURN: "komm zurück|zurück|zurückkommen|umkehren|kehr um|komm heim|nach hause|komm wieder her",
+        Order.ABORT: "abbrechen|abbruch|aufhören|brich ab|mission abbrechen|sofort abbrechen",
+        Order.RETURN: "komm zurück|zurück|zurückkommen|umkehren|kehr um|komm heim|nach hause|komm wieder her",
         "": "bitte|danke|doch|mal|jetzt|sofort|also|ach|äh|ähm|na|nun|drohne",
     },
     "fr": {
@@ -44,10 +44,10 @@ _TABLES: Mapping[str, Mapping[str, str]] = {
         "|pas sûr|je ne suis pas sûr|je suis pas sûr|pas certain|difficile à dire|ça dépend|un moment"
         "|un instant|pardon|comment|quoi|répète|répétez|encore une fois|je crois|je crois que oui|je pense"
         "|je pense que oui|probablement|sans doute|oui et non|peu importe",
-        Command.HOLD: "stop|attends|attendez|arrête|arrêtez|arrête toi|halte|reste là|ne bouge plus|pause",
-        Command.ABORT: "abandonne|abandonner|annuler|abandonnez|annule|annulez|annule la mission"
+        Order.HOLD: "stop|attends|attendez|arrête|arrêtez|arrête toi|halte|reste là|ne bouge plus|pause",
+        Order.ABORT: "abandonne|abandonner|annuler|abandonnez|annule|annulez|annule la mission"
         "|interromps la mission|avorte",
-        Command.RETURN: "reviens|revenez|retour|rentre|rentrez|reviens ici|rentre à la base|retour à la base|demi tour",
+        Order.RETURN: "reviens|revenez|retour|rentre|rentrez|reviens ici|rentre à la base|retour à la base|demi tour",
         "": "s'il te plaît|s'il vous plaît|merci|donc|alors|euh|bon|ben|maintenant|tout de suite|drone",
     },
     "es": {
@@ -62,9 +62,9 @@ _TABLES: Mapping[str, Mapping[str, str]] = {
         "|a lo mejor|puede ser|puede"
         "|posiblemente|no estoy seguro|no estoy segura|no seguro|difícil de decir|depende|un momento"
         "|cómo|qué|perdón|repite|repita|otra vez|creo que sí|creo|supongo|probablemente|sí y no|da igual",
-        Command.HOLD: "alto|espera|espere|parar|para|pare|detente|deténgase|stop|quieto|quédate ahí|pausa",
-        Command.ABORT: "aborta|cancelar|aborte|abortar|cancela|cancele|cancela la misión|cancelar la misión",
-        Command.RETURN: "vuelve|volver|regresar|atrás|vuelva|regresa|regrese|vuelve aquí"
+        Order.HOLD: "alto|espera|espere|parar|para|pare|detente|deténgase|stop|quieto|quédate ahí|pausa",
+        Order.ABORT: "aborta|cancelar|aborte|abortar|cancela|cancele|cancela la misión|cancelar la misión",
+        Order.RETURN: "vuelve|volver|regresar|atrás|vuelva|regresa|regrese|vuelve aquí"
         "|vuelve a la base|regresa a la base|a casa",
         "": "por favor|gracias|pues|bueno|eh|entonces|ahora|ya|señor|dron",
     },
@@ -72,7 +72,7 @@ _TABLES: Mapping[str, Mapping[str, str]] = {
 """Language → meaning → phrases, split by bars; the empty meaning is politeness."""
 
 
-def understand_foreign(text: str, language: str) -> tuple[str, Command | None] | None:
+def understand_foreign(text: str, language: str) -> tuple[str, Order | None] | None:
     """The reading and, for orders, the command; None where a word is not known or two things are said.
 
     Args:
@@ -87,7 +87,7 @@ def understand_foreign(text: str, language: str) -> tuple[str, Command | None] |
         words, found = re.subn(rf"(?<![\w']){re.escape(phrase)}(?![\w'])", ";", words)
         if found and meaning:
             said.add(meaning)
-    orders = [command for command in (Command.ABORT, Command.RETURN, Command.HOLD) if command in said]
+    orders = [command for command in (Order.ABORT, Order.RETURN, Order.HOLD) if command in said]
     if orders and not said & {NO}:
         return COMMAND, orders[0]
     if re.search(r"\w", words) or not said:

@@ -61,6 +61,11 @@ class MapBuilder:
         self._names = Names()
         self._last: SemanticMap | None = None
 
+    @property
+    def last(self) -> SemanticMap | None:
+        """The map that was drawn last; None before the first one."""
+        return self._last
+
     def integrate(self, frame: Frame, detections: Iterable[Detection]) -> None:
         """Learns from one picture and from what was found in it.
 

@@ -1,136 +1,140 @@
-"""Putting questions: words, the operator's answer, what it teaches; and the explanation of every gap."""
+"""Questions and answers: putting one, learning from what comes back, late and second answers (method, section 5)."""
 
 from __future__ import annotations
 
-import time
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
-from typing import Protocol
+from dataclasses import replace
 
-from mintpilot.core.events import Asked, Deliberated, Noticed, Timed
-from mintpilot.core.gap import KnowledgeGap
-from mintpilot.core.mission import AskingSettings
-from mintpilot.core.ports import Ask, Fly, Operator, Recorder
-from mintpilot.core.query import Command, Query, Question
-from mintpilot.core.tree import Mint, ScoredQuery
-from mintpilot.elicitation.wording import word_question
-from mintpilot.mission.mind import Mind, Thought, learn
-from mintpilot.mission.rewording import Improve, Rewording
+from mintpilot.core.decisions import AskQuestion, Reasoning
+from mintpilot.core.inputs import Answered, QuestionReworded, QuestionShown
+from mintpilot.core.query import Answer, Query, Reply
+from mintpilot.mission.belief_state import BeliefState, update
+from mintpilot.mission.deliberation import settle
+from mintpilot.mission.directives import ShowQuestion
+from mintpilot.mission.permissions import enlarges, permissions, revoke
+from mintpilot.mission.state import Activity, Goal, OpenQuestion
+from mintpilot.mission.transition import Transition
 
 
-class Wording(Protocol):
-    """Puts a cut into words. Words never decide meaning: the query goes with them."""
-
-    def __call__(self, query: Query, gaps: Sequence[KnowledgeGap], mint: Mint | None, *, attempt: int = 1) -> Question:
-        """The question for a cut; from the second attempt on in other words."""
-        ...
-
-
-@dataclass(slots=True)
-class Interview:
-    """The conversation of one mission, with what the report needs of it."""
-
-    operator: Operator
-    recorder: Recorder
-    settings: AskingSettings
-    word: Wording = word_question
-    improve: Improve | None = None
-    """Makes better words while the first ones are shown; None: nobody does."""
-    remarks: Callable[[], Sequence[str]] = tuple
-    """What went wrong with the words since it was last called, in sentences."""
-    firsts: list[Thought] = field(default_factory=list, init=False)
-    """Deliberations that knew of gaps nobody had known of before: the figures of the explanations come from them."""
-    asked_gaps: list[str] = field(default_factory=list, init=False)
-    rounds: int = field(default=0, init=False)
-    bounds: list[str] = field(default_factory=list, init=False)
-    """What bounds on the work left out, each told once."""
-
-    def deliberated(self, thought: Thought, seconds: float) -> None:
-        """Tells the recorder of one deliberation."""
-        known = {gap.id for first in self.firsts for gap in first.findings.gaps}
-        if {gap.id for gap in thought.findings.gaps} - known:
-            self.firsts.append(thought)
-        decision = thought.decision
-        self.recorder.record(
-            Deliberated(
-                round=self.rounds,
-                gaps=thought.findings.gaps,
-                problem=thought.situation.problem,
-                mint=decision.mint,
-                chosen=decision.scored if isinstance(decision, Ask) else None,
-                alternatives=decision.alternatives if isinstance(decision, Ask) else (),
-                certificate=decision.certificate if isinstance(decision, Fly) else None,
-                seconds=seconds,
-                proposed=decision.proposed,
-                bound_bits=decision.bound_bits if isinstance(decision, Ask) else None,
-            )
-        )
-        self.rounds += 1
-        for note in thought.left_out:
-            if note not in self.bounds:
-                self.bounds.append(note)
-                self.recorder.record(Noticed(kind="bound", text=f"A bound on the work was reached: {note}."))
-        self.pass_on_remarks()
-
-    def pass_on_remarks(self) -> None:
-        """Tells the recorder and the operator what went wrong with the words: they learn it in the mission's thread."""
-        for remark in self.remarks():
-            self.recorder.record(Noticed(kind="language", text=remark))
-            self.operator.tell(remark)
-
-
-def put_question(interview: Interview, mind: Mind, ask: Ask) -> tuple[Mind, Command | None]:
-    """Asks one question and learns from the answer; a command comes back instead of being learnt from."""
-    record = interview.recorder.record
-    scored: ScoredQuery = ask.scored
-    begun = time.perf_counter()
-    attempt = mind.attempts.count(scored.query.id) + 1
-    gaps = tuple(g for g in mind.belief.gaps if g.id in scored.query.gap_ids)
-    question = interview.word(scored.query, gaps, ask.mint, attempt=attempt)
-    wording_s = time.perf_counter() - begun
-    record(Timed(stage="wording", seconds=wording_s))
-    asked = _put(interview, scored, question, wording_s)
-    record(asked)
-    answer = asked.answer
-    record(Timed(stage="answer", seconds=answer.latency_s))
-    interview.pass_on_remarks()
-    interview.asked_gaps.extend(scored.query.gap_ids)
-    if answer.command is not None:
-        return mind, answer.command
-    lesson = learn(mind, scored.query, answer, interview.settings)
-    if lesson.contradiction:
-        record(
-            Noticed(
-                kind="contradiction",
-                text=f"The answer to '{question.text}' goes against an earlier one; it was not taken over.",
-            )
-        )
-    elif lesson.surplus_refused:
-        record(
-            Noticed(
-                kind="contradiction",
-                text=f"What was said beyond '{question.text}' goes against what is known; the rest was taken over.",
-            )
-        )
-    return lesson.mind, None
-
-
-def _put(interview: Interview, scored: ScoredQuery, question: Question, wording_s: float) -> Asked:
-    """Shows the question at once; better words follow when they are ready, and only a first attempt gets them."""
-    operator, patience_s = interview.operator, interview.settings.patience_s
-    if interview.improve is None or question.attempt > 1:
-        answer = operator.ask(question, patience_s)
-        return Asked(question=question, scored=scored, answer=answer, wording_s=wording_s)
-    better = Rewording(interview.improve, question)
-    answer = operator.ask(question, patience_s, better)
-    shown = better.wait(0.0) if answer.better_s is not None else None
-    if shown is None or answer.better_s is None:
-        return Asked(question=question, scored=scored, answer=answer, wording_s=wording_s)
-    return Asked(
-        question=shown,
-        scored=scored,
-        answer=answer,
-        wording_s=wording_s,
-        first_text=question.text,
-        better_s=wording_s + answer.better_s,
+def take_over(t: Transition, reasoning: Reasoning) -> None:
+    """Takes over what a deliberation has found: the belief over the gaps, what is settled, and the explanations."""
+    beliefs = replace(t.beliefs, map=settle(t.beliefs.map, reasoning), belief=reasoning.belief)
+    known = {explanation.gap_id for explanation in t.state.explanations}
+    fresh = tuple(e for e in reasoning.explanations if e.gap_id not in known)
+    t.set(
+        beliefs=beliefs,
+        explanations=(*t.state.explanations, *fresh),
+        fallback=reasoning.cautious or t.state.fallback,
     )
+    for bound in reasoning.left_out:
+        if bound not in t.state.notes:
+            t.set(notes=t.state.notes | {bound})
+            t.note("bound", f"A bound on the work was reached: {bound}.")
+
+
+def put(t: Transition, decision: AskQuestion) -> None:
+    """Puts the question; its deadline runs from when it is shown."""
+    question = replace(decision.question, id=f"q{t.next_id()}")
+    patience_s = t.state.setup.mission.asking.patience_s
+    t.set(
+        question=OpenQuestion(
+            question=question,
+            scored=decision.scored,
+            asked_s=t.state.clock_s,
+            deadline_s=t.state.clock_s + patience_s,
+        ),
+        asked_gaps=t.state.asked_gaps | set(question.query.gap_ids),
+        activity=Activity.NONE,
+    )
+    t.give(ShowQuestion(question=question, patience_s=patience_s))
+
+
+def shown(t: Transition, event: QuestionShown) -> None:
+    """Somebody has the question in front of them."""
+    open_ = t.state.question
+    if open_ is not None and open_.question.id == event.question and open_.shown_s is None:
+        deadline_s = event.time_s + t.state.setup.mission.asking.patience_s
+        t.set(question=replace(open_, shown_s=event.time_s, deadline_s=deadline_s))
+
+
+def reworded(t: Transition, event: QuestionReworded) -> None:
+    """Shows better words for the open question; query, gaps and consequences stay."""
+    open_ = t.state.question
+    if open_ is None or open_.question.id != event.question or open_.question.text == event.text:
+        return
+    question = replace(open_.question, text=event.text, worded_by=event.worded_by)
+    first = open_.first_text or open_.question.text
+    t.set(question=replace(open_, question=question, first_text=first, reworded_s=event.seconds))
+    t.give(ShowQuestion(question=question, patience_s=max(0.0, open_.deadline_s - t.state.clock_s)))
+
+
+def answered(t: Transition, event: Answered) -> None:
+    """Learns from an answer to the open question; late ones count only where they add caution (method, section 8)."""
+    open_ = t.state.question
+    if open_ is None or open_.question.id != event.question:
+        _late(t, event)
+        return
+    _learn(t, open_.question.query, open_.question.text, event.answer)
+    t.withdraw("it was answered")
+
+
+def unanswered(t: Transition) -> None:
+    """The deadline has passed: the way that is safe whatever holds."""
+    open_ = t.state.question
+    assert open_ is not None
+    _learn(t, open_.question.query, open_.question.text, Answer(reply=Reply.TIMEOUT, latency_s=_waited_s(t, open_)))
+    t.withdraw("no answer came in time")
+    t.note("silence", "No answer came: the drone takes the way that is safe whatever holds.")
+
+
+def somebody_spoke(t: Transition) -> None:
+    """Silence is over."""
+    if t.state.beliefs is not None and t.state.beliefs.silent:
+        t.set(beliefs=replace(t.state.beliefs, silent=False))
+
+
+def _waited_s(t: Transition, open_: OpenQuestion) -> float:
+    begun_s = open_.asked_s if open_.shown_s is None else open_.shown_s
+    return max(0.0, t.state.clock_s - begun_s)
+
+
+def _learn(t: Transition, query: Query, text: str, answer: Answer) -> None:
+    result = update(t.beliefs, query, answer, t.state.setup.mission.asking)
+    t.set(beliefs=result.state)
+    if result.contradiction:
+        t.note("contradiction", f"The answer to '{text}' goes against an earlier one; it was not taken over.")
+    elif result.extra_refused:
+        t.note("contradiction", f"What was said beyond '{text}' goes against what is known; the rest was taken over.")
+
+
+def _late(t: Transition, event: Answered) -> None:
+    """An answer to a question that is no longer open: it counts where it adds caution, and is kept for the report."""
+    query = dict(t.state.earlier).get(event.question)
+    said = event.answer.text or event.answer.reply.value
+    if query is None or t.state.beliefs is None or event.answer.part is None:
+        t.note("late-answer", f"'{said}' came when nothing was asked; it changed nothing.")
+        return
+    before = t.beliefs
+    after = _after_late(before, query, event.answer, t)
+    if enlarges(before, after, t.state.setup.mission.asking):
+        t.note("late-answer", f"'{said}' came too late; it would have taken caution away, and was ignored.")
+        return
+    t.set(beliefs=replace(after, silent=False))
+    settings = t.state.setup.mission.asking
+    if permissions(after, settings) == permissions(before, settings):
+        t.note("late-answer", f"'{said}' came late and was taken over.")
+        return
+    t.note("late-answer", f"'{said}' came late; it adds caution: the drone stops and deliberates again.")
+    t.tell("I take that back: I stop and think again.")
+    t.withdraw("an earlier answer was taken back")
+    t.set(request=None)
+    if t.state.goal is Goal.TASK:
+        t.brake()
+
+
+def _after_late(before: BeliefState, query: Query, answer: Answer, t: Transition) -> BeliefState:
+    settings = t.state.setup.mission.asking
+    result = update(before, query, answer, settings)
+    held = {gap.id for gap in before.belief.gaps}
+    if not result.contradiction and set(query.gap_ids) <= held:
+        return result.state
+    return revoke(before, query, answer.part)

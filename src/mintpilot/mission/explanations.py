@@ -1,34 +1,25 @@
-"""The explanation of every gap of a mission: asked or not, and why, in figures."""
+"""Why every gap of a mission was asked about or not, in figures."""
 
 from __future__ import annotations
 
-from mintpilot.core.tree import GapExplanation
-from mintpilot.mission.asking import Interview
-from mintpilot.mission.mind import Thought
+from mintpilot.core.errors import LimitError
+from mintpilot.core.ports import Situation
+from mintpilot.core.tree import GapExplanation, Mint
 from mintpilot.reasoning.explain import explain_gaps
 from mintpilot.reasoning.tree import build_tree
 
 
-def explained_first(thought: Thought, *, asked: frozenset[str] | None = None) -> tuple[GapExplanation, ...]:
-    """The explanations of all gaps of one deliberation, by id.
+def explanations(situation: Situation, mint: Mint | None) -> tuple[GapExplanation, ...]:
+    """What each open gap is worth now, by id; whether it is asked about is not decided yet.
+
+    None where a bound on the work is met.
 
     Args:
-        thought: the deliberation, the first one that knew of these gaps.
-        asked: ids of gaps that were asked about, then or later; None while that is not decided yet.
+        situation: what the strategy decided on.
+        mint: its tree; None: it is built here.
     """
-    seen = thought.situation
-    mint = thought.decision.mint or build_tree(seen.space, seen.belief, seen.settings, seen.metric)
-    return explain_gaps(seen.space, seen.belief, mint, seen.settings, seen.metric, asked=asked)
-
-
-def explanations_of(interview: Interview, thought: Thought) -> tuple[GapExplanation, ...]:
-    """The explanations of every gap that was ever open in a mission.
-
-    Each is taken from the first deliberation that knew of the gap: what it was worth before anything was asked.
-    """
-    asked = frozenset(interview.asked_gaps)
-    explanations: dict[str, GapExplanation] = {}
-    for earlier in (*interview.firsts, thought):
-        for one in explained_first(earlier, asked=asked):
-            explanations.setdefault(one.gap_id, one)
-    return tuple(explanations[name] for name in sorted(explanations))
+    try:
+        tree = mint or build_tree(situation.space, situation.belief, situation.settings, situation.metric)
+        return explain_gaps(situation.space, situation.belief, tree, situation.settings, situation.metric)
+    except LimitError:  # a bound on the work: the mission goes on without the figures
+        return ()

@@ -7,10 +7,11 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from mintpilot.core.errors import InfeasibleError
-from mintpilot.core.geometry import Vec3
 from mintpilot.core.ports import Ask
 from mintpilot.core.query import answer_for
-from mintpilot.mission.mind import Mind, Thinking, Thought, learn, think
+from mintpilot.core.semantic_map import SemanticMap
+from mintpilot.mission.deliberation import Deliberation, DeliberationParts
+from mintpilot.mission.rehearsal import Rehearsal, begin
 
 NEGLIGIBLE = 1e-3
 """Histories of answers less likely than this are counted as if they ended there."""
@@ -20,7 +21,7 @@ NEGLIGIBLE = 1e-3
 class Preview:
     """What asking would come to."""
 
-    first: Thought
+    first: Deliberation
     """The deliberation that happens now."""
     expected_questions: float
     """Mean number of questions over the answers, weighted by the belief."""
@@ -29,22 +30,18 @@ class Preview:
 
 
 def preview(
-    mind: Mind,
-    parts: Thinking,
+    map: SemanticMap,
+    parts: DeliberationParts,
     *,
-    start_m: Vec3,
-    endurance_s: float,
     max_deliberations: int = 200,
     patience_s: float = 20.0,
     clock: Callable[[], float] = time.perf_counter,
 ) -> Preview:
-    """Thinks once, and then through every history of answers.
+    """Deliberates once, and then through every history of answers.
 
     Args:
-        mind: what is known.
-        parts: what thinking is done with.
-        start_m: where the drone is, metres.
-        endurance_s: flight time that a plan may use, seconds.
+        map: what is known.
+        parts: what deliberation is done with.
         max_deliberations: bound on the work.
         patience_s: no further history of answers is begun after so many seconds.
         clock: tells them.
@@ -57,25 +54,25 @@ def preview(
     left = [max_deliberations]
     complete = [True]
 
-    def expected(here: Mind, weight: float, thought: Thought | None = None) -> float:
-        if thought is None:
+    def expected(here: Rehearsal, weight: float, found: Deliberation | None = None) -> float:
+        if found is None:
             if left[0] <= 0 or weight < NEGLIGIBLE or clock() - begun_s > patience_s:
                 complete[0] = False
                 return 0.0
             left[0] -= 1
             try:
-                thought = think(here, alone, start_m=start_m, endurance_s=endurance_s)
+                found = here.deliberated(alone)
             except InfeasibleError:
                 return 0.0
-        if not isinstance(thought.decision, Ask):
+        if not isinstance(found.decision, Ask):
             return 0.0
-        scored = thought.decision.scored
+        scored, asked = found.decision.scored, here.asked(found)
         total = 1.0
         for part, share in enumerate(scored.reply_probabilities):
             if share > 0:
-                lesson = learn(thought.mind, scored.query, answer_for(scored.query, part), parts.settings)
-                total += share * expected(lesson.mind, weight * share)
+                total += share * expected(asked.answered(answer_for(scored.query, part)), weight * share)
         return total
 
-    first = think(mind, parts, start_m=start_m, endurance_s=endurance_s)
-    return Preview(first=first, expected_questions=expected(mind, 1.0, first), complete=complete[0])
+    start = begin(parts, map)
+    first = start.deliberated()
+    return Preview(first=first, expected_questions=expected(start, 1.0, first), complete=complete[0])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from dataclasses import replace
 
 import numpy as np
 
@@ -25,10 +25,8 @@ def explain_gaps(
     mint: Mint,
     settings: AskingSettings,
     metric: ImpactMetric,
-    *,
-    asked: Collection[str] | None = (),
 ) -> tuple[GapExplanation, ...]:
-    """The explanation of every gap of the belief, by id.
+    """The explanation of every gap of the belief, by id, while it is not decided yet whether it is asked about.
 
     Costs compare the best plans under the gap's best and worst value, all else as at the likeliest node of the tree
     that branches on it (at the root for gaps that no node branches on).
@@ -39,7 +37,6 @@ def explain_gaps(
         mint: its tree.
         settings: thresholds.
         metric: distance between paths.
-        asked: ids of gaps that were asked about at any time; None while that is not decided yet.
     """
     regret = regret_matrix(mint, settings)
     made = []
@@ -49,23 +46,19 @@ def explain_gaps(
         divergence = metric.divergence(best.path_m, worst.path_m) if best and worst else None
         gain, saved = _worth(mint, regret, gap.id)
         bits = entropy_bits(belief.marginal(gap.id))
+        relevant, figures = node is not None, _figures(gap, best, worst, divergence, bits)
+        set_aside = _set_aside(best, worst, settings)
+        why = f"Matters: {figures}." if relevant else f"Does not matter: {figures}{set_aside}."
         made.append(
             GapExplanation(
                 gap_id=gap.id,
                 description=gap.description,
                 kind=gap.kind.value,
-                asked=asked is not None and gap.id in asked,
-                relevant=node is not None,
-                why=_why(
-                    gap,
-                    node is not None,
-                    None if asked is None else gap.id in asked,
-                    best,
-                    worst,
-                    divergence,
-                    bits,
-                    settings,
-                ),
+                asked=False,
+                relevant=relevant,
+                why=why if figures else "Nothing can be flown, whatever it is.",
+                figures=figures,
+                set_aside=set_aside,
                 cost_if_favourable_s=best.cost_s if best else None,
                 cost_if_unfavourable_s=worst.cost_s if worst else None,
                 divergence_m=divergence,
@@ -109,18 +102,23 @@ def _worth(mint: Mint, regret_s: Floats, gap_id: str) -> tuple[float, float]:
     return gain, max(0.0, expected_regret_s(regret_s, p) - after)
 
 
-def _why(
-    gap: KnowledgeGap,
-    relevant: bool,
-    asked: bool | None,
-    best: Plan | None,
-    worst: Plan | None,
-    divergence_m: float | None,
-    bits: float,
-    settings: AskingSettings,
-) -> str:
+def decided(explanation: GapExplanation, asked: bool) -> GapExplanation:
+    """The explanation once it is known whether the gap was asked about."""
+    if not explanation.figures:
+        return replace(explanation, asked=asked)
+    if asked:
+        why = f"Asked: {explanation.figures}."
+    elif explanation.relevant:
+        why = f"Not asked: {explanation.figures}, but other answers settled the plan."
+    else:
+        why = f"Not asked: {explanation.figures}{explanation.set_aside}."
+    return replace(explanation, asked=asked, why=why)
+
+
+def _figures(gap: KnowledgeGap, best: Plan | None, worst: Plan | None, divergence_m: float | None, bits: float) -> str:
+    """What hangs on the gap, in figures; empty where nothing can be flown whatever it is."""
     if best is None:
-        return "Nothing can be flown, whatever it is."
+        return ""
     if worst is None:
         figures = f"the best plan takes {best.cost_s:.1f} s one way, and there is none the other way"
     else:
@@ -129,16 +127,14 @@ def _why(
         figures = f"the best plan takes {best.cost_s:.1f} s or {worst.cost_s:.1f} s ({extra:.1f} s more{apart})"
     if gap.kind is GapKind.TARGET:
         figures += f"; {bits:.2f} bits are not known"
-    if asked:
-        return f"Asked: {figures}."
-    if relevant and asked is None:
-        return f"Matters: {figures}."
-    if relevant:
-        return f"Not asked: {figures}, but other answers settled the plan."
-    head = "Does not matter" if asked is None else "Not asked"
-    if worst is None or worst.cost_s - best.cost_s <= settings.delta_c_s + TOLERANCE:
-        limits = f"{settings.delta_c_s:.1f} s"
-        if settings.rule is CriticalityRule.PAPER:
-            limits += f" and {settings.delta_d_m:.1f} m"
-        return f"{head}: {figures}; differences up to {limits} are not worth a question."
-    return f"{head}: {figures}, but it is as good as known."
+    return figures
+
+
+def _set_aside(best: Plan | None, worst: Plan | None, settings: AskingSettings) -> str:
+    """Why a gap that no plan depends on is left alone; follows the figures."""
+    if best is None or (worst is not None and worst.cost_s - best.cost_s > settings.delta_c_s + TOLERANCE):
+        return ", but it is as good as known"
+    limits = f"{settings.delta_c_s:.1f} s"
+    if settings.rule is CriticalityRule.PAPER:
+        limits += f" and {settings.delta_d_m:.1f} m"
+    return f"; differences up to {limits} are not worth a question"

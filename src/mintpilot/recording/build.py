@@ -27,6 +27,7 @@ from mintpilot.recording.record import (
     GapRecord,
     MissionRecord,
     NoticeRecord,
+    OrderRecord,
     QuestionRecord,
     RoundRecord,
     SeenRecord,
@@ -79,6 +80,10 @@ def build_record(history: History, *, run_dir: str = "", unfinished: str = "") -
         frames=history.frames,
         timings_s=dict(history.timings_s),
         notices=tuple(NoticeRecord(kind=n.kind, text=n.text) for n in history.notices),
+        orders=tuple(
+            OrderRecord(order=o.order, operator=o.operator, text=o.text, answer=o.answer, time_s=o.time_s)
+            for o in history.orders
+        ),
         run_dir=run_dir,
     )
 
@@ -174,7 +179,6 @@ def _question(asked: Asked, gaps: Sequence[KnowledgeGap]) -> QuestionRecord:
         attempt=question.attempt,
         reply=answer.reply,
         option=answer.option,
-        command=answer.command,
         answer_text=answer.text,
         latency_s=answer.latency_s,
         first_text=asked.first_text,

@@ -14,7 +14,9 @@ from mintpilot.core.events import (
     MissionEnded,
     MissionStarted,
     Noticed,
+    OrderTaken,
     PlanChosen,
+    Stepped,
     Timed,
 )
 from mintpilot.core.gap import KnowledgeGap
@@ -36,6 +38,7 @@ class History:
     chosen: list[PlanChosen] = field(default_factory=list)
     legs: list[LegFlown] = field(default_factory=list)
     notices: list[Noticed] = field(default_factory=list)
+    orders: list[OrderTaken] = field(default_factory=list)
     timings_s: dict[str, float] = field(default_factory=dict)
     """Seconds in all for each stage."""
     ended: MissionEnded | None = None
@@ -59,6 +62,10 @@ class History:
                 self.legs.append(event)
             case Noticed():
                 self.notices.append(event)
+            case OrderTaken():
+                self.orders.append(event)
+            case Stepped():
+                pass
             case Timed():
                 self.timings_s[event.stage] = self.timings_s.get(event.stage, 0.0) + event.seconds
             case MissionEnded():
@@ -90,7 +97,7 @@ class History:
         return tuple(
             reply
             for a in self.asked
-            if a.answer.part is not None and a.answer.command is None
+            if a.answer.part is not None
             for reply in (Evidence(query=a.question.query, part=a.answer.part), *a.answer.also)
         )
 

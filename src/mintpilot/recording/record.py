@@ -12,10 +12,10 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, JsonValue, Validati
 from mintpilot.core.errors import RecordError
 from mintpilot.core.gap import GapKind
 from mintpilot.core.mission import Outcome
-from mintpilot.core.query import Command, Reply
+from mintpilot.core.query import Order, Reply
 from mintpilot.core.tree import LeafReason, StopReason
 
-SCHEMA_VERSION = 1
+SCHEMA_VERSION = 2
 """Of the record; raised with every change that old readers would misread."""
 
 
@@ -91,7 +91,6 @@ class QuestionRecord(Part):
     reply: Reply
     option: int | None = None
     """Which of ``replies`` was chosen, from 0; null where the question was no choice."""
-    command: Command | None
     answer_text: str
     """As it was given: data, never an instruction."""
     latency_s: Figure
@@ -228,6 +227,19 @@ class SeenRecord(Part):
     """Provenance: number of the picture, and left, top, right, bottom in it, pixels."""
 
 
+class OrderRecord(Part):
+    """One order that an operator gave."""
+
+    order: Order
+    operator: str
+    text: str
+    """As it was given: data, never an instruction to this program."""
+    answer: str
+    """What the drone said that it does."""
+    time_s: float
+    """Mission clock."""
+
+
 class NoticeRecord(Part):
     """Something worth a line."""
 
@@ -268,6 +280,7 @@ class MissionRecord(Part):
     """Pictures that were looked at."""
     timings_s: dict[str, float]
     notices: tuple[NoticeRecord, ...]
+    orders: tuple[OrderRecord, ...] = ()
     run_dir: str
     """Empty where nothing was written."""
 

@@ -1,7 +1,7 @@
 """The run folder: everything of one mission on disk, readable at any moment.
 
 config.json     what was to be done, with every setting resolved
-events.ndjson   one line an event, written as it happens
+events.ndjson   all events exactly, one line each, written as they happen
 record.json     the record; replaced after every decision, final at the end
 frames/         pictures that the drone saw
 tree.*          the tree as JSON, text, SVG and Graphviz
@@ -12,7 +12,6 @@ report.html     all of it for people
 from __future__ import annotations
 
 import json
-import os
 import time
 from collections.abc import Callable, Mapping
 from datetime import datetime
@@ -34,8 +33,8 @@ from mintpilot.core.events import (
     PlanChosen,
 )
 from mintpilot.core.ports import Recorder
-from mintpilot.recording.build import build_record
-from mintpilot.recording.event_json import event_line
+from mintpilot.recording.build import build_record, versions
+from mintpilot.recording.event_log import EVENTS_FILE, EventLogWriter
 from mintpilot.recording.frames import FrameStore
 from mintpilot.recording.history import History
 from mintpilot.recording.products import write_products
@@ -66,19 +65,15 @@ class RunFolder(Recorder):
         clock: Callable[[], float] = time.time,
     ) -> None:
         self.path = path
-        self._clock = clock
         self._history = History()
-        self._number = 0
         self._lost: list[str] = []
         self._noted = 0
-        self._torn = False
         self._has_config = config is not None
         self._record: MissionRecord | None = None
-        if (path / "events.ndjson").exists():
+        if (path / EVENTS_FILE).exists():
             raise RecordError(f"run folder '{path}' holds a run already: give another one, or move it away")
         try:
             (path / "frames").mkdir(parents=True, exist_ok=True)
-            self._events = os.open(path / "events.ndjson", os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o644)
             if config is not None:
                 _replace(path / "config.json", json.dumps(config, indent=2, ensure_ascii=False, default=str))
         except OSError as error:
@@ -86,12 +81,13 @@ class RunFolder(Recorder):
                 f"cannot write the run folder '{path}': {error.strerror}; "
                 "give a folder that you may write, on a disk with room"
             ) from error
+        self._events = EventLogWriter(path / EVENTS_FILE, program=versions().get("mintpilot", ""), clock=clock)
         self._frames = FrameStore(path / "frames")
 
     def record(self, event: Event) -> None:
         """Writes the event through at once. What cannot be written is noted, and the mission goes on."""
         self._history.add(event)
-        self._guard("an event", lambda: self._write_line(event))
+        self._guard("an event", lambda: self._events.append(event))
         if isinstance(event, FrameSeen):
             self._guard("a picture", lambda: self._frames.add(event.index, event.frame))
         elif isinstance(event, _DECISIONS):
@@ -109,8 +105,8 @@ class RunFolder(Recorder):
         """
         if self._record is not None:
             return self._record
+        self._guard("the end of the events", self._events.close)
         record = self._record = self._write_record(reason)
-        os.close(self._events)
         self._guard("pictures", lambda: self._frames.prune({s.view[0] for s in record.seen if s.view}))
         failures = write_products(record, self._history, self.path)
         if failures or len(self._lost) != self._noted:
@@ -131,16 +127,6 @@ class RunFolder(Recorder):
         else:
             self.close(f"The program ended the mission: {error or kind.__name__}")
 
-    def _write_line(self, event: Event) -> None:
-        line = event_line(event, number=self._number, at_s=self._clock())
-        self._number += 1
-        data = b"\n" + line if self._torn else line
-        self._torn = True
-        written = os.write(self._events, data)
-        while written < len(data):
-            written += os.write(self._events, data[written:])
-        self._torn = False
-
     def _write_record(self, unfinished: str) -> MissionRecord:
         record = build_record(
             self._history, run_dir=str(self.path).encode("utf-8", "replace").decode(), unfinished=unfinished
@@ -158,7 +144,7 @@ class RunFolder(Recorder):
             write()
         except OSError as error:
             self._lost.append(f"{what} ({error.strerror or error})")
-        except ValueError as error:  # words from outside that are no text
+        except (RecordError, ValueError) as error:  # what has no form in the file, e.g. words that are no text
             self._lost.append(f"{what} ({error})")
 
 

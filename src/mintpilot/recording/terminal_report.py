@@ -87,10 +87,10 @@ def _asked(record: MissionRecord) -> RenderableType:
 
 
 def _question(question: QuestionRecord) -> Iterator[Text]:
-    said = f"Order: {question.command.value}" if question.command else reply_words(question)
+    said = reply_words(question)
     means = consequence(question)
     yield _plain(f"? {question.text}", "bold")
-    arrow = f" → {printable(means)}" if means and question.command is None else ""
+    arrow = f" → {printable(means)}" if means else ""
     facts = f"  (after {number(question.latency_s, 's')}, {number(question.gain_bits, 'bit', 2)})"
     yield Text.assemble("  ", (said, _STYLES[question.reply]), arrow, (facts, "dim"))
     for also in question.also:

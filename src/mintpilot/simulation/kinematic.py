@@ -2,20 +2,50 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
+from mintpilot.core.errors import DeviceError
 from mintpilot.core.geometry import Floats
+from mintpilot.core.inputs import MotionEnded
 from mintpilot.core.mission import Verdict
-from mintpilot.core.plan import Stop
-from mintpilot.core.ports import Judge, Vehicle, Watch
-from mintpilot.core.trajectory import FlightEnd, FlightLog, Trajectory, VehicleState
+from mintpilot.core.motion import FollowTrajectory, Land, Motion, MotionEnd, PerformAction, TakeOff
+from mintpilot.core.ports import Judge, Vehicle
+from mintpilot.core.trajectory import FlightEnd, FlightLog, VehicleState
 from mintpilot.simulation.judge import SceneJudge, collision
 from mintpilot.simulation.obstacles import Obstacles
-from mintpilot.simulation.reference import Reference, as_vec3, braked, check_start, hover, sampled, time_steps
+from mintpilot.simulation.reference import (
+    Reference,
+    as_vec3,
+    braked,
+    check_start,
+    descent,
+    hover,
+    joined,
+    sampled,
+    time_steps,
+)
 from mintpilot.simulation.scene import FlightRules, Scene
 
 STEP_S = 0.02
 """Time between the moments at which the world is looked at, seconds."""
+_ACT_STEP_S = 0.1
+_SOON_S = 1e-9
+
+
+@dataclass(slots=True)
+class _Flown:
+    """The motion that is being made, worked out to its end."""
+
+    motion: Motion
+    begun_s: float
+    way: Reference
+    last: int
+    """Row at which it ends."""
+    failure: Verdict | None
+    """What ends it there; None: nothing does."""
+    braked: bool = False
 
 
 class KinematicSimulator(Vehicle, Judge):
@@ -27,18 +57,19 @@ class KinematicSimulator(Vehicle, Judge):
         scene: the world.
         rules: what ends a flight.
         seed: taken so that simulators are made alike; nothing here is random.
-        watch_every_s: time between calls of a watch, seconds.
     """
 
-    def __init__(self, scene: Scene, rules: FlightRules, *, seed: int, watch_every_s: float = 0.5) -> None:
+    def __init__(self, scene: Scene, rules: FlightRules, *, seed: int) -> None:
         del seed
+        self._floor_m = scene.volume.lo_m[2]
         self._judge = SceneJudge(scene, rules)
         self._obstacles = Obstacles(scene, rules.radius_m)
-        self._watch_every_s = watch_every_s
         self._time_s = 0.0
         self._position: Floats = np.asarray(scene.start_m, float)
         self._velocity: Floats = np.zeros(3)
         self._yaw = 0.0
+        self._flown: _Flown | None = None
+        self._refused: MotionEnded | None = None
 
     def begin_mission(self) -> None:
         """The survey is over: the mission's clock starts, with a fresh battery. Call it without a survey, too."""
@@ -54,54 +85,64 @@ class KinematicSimulator(Vehicle, Judge):
             endurance_left_s=self._judge.endurance_left_s(self._time_s),
         )
 
-    def follow(self, trajectory: Trajectory, watch: Watch | None = None) -> FlightLog:
-        """Flies the trajectory in no time of this machine's clock.
+    def command(self, motion: Motion) -> None:
+        """Begins a motion.
 
         Raises:
-            InputError: the trajectory is empty, malformed or not finite.
-            DeviceError: it does not begin where the vehicle is.
+            InputError: a trajectory is empty, malformed or not finite.
         """
-        check_start(trajectory, as_vec3(self._position))
-        if self._judge.verdict() is not None:
-            return self._grounded()
-        way = sampled(trajectory, time_steps(trajectory.duration_s, STEP_S))
-        failure = self._first_failure(way)
-        end = FlightEnd.ARRIVED
-        stopped = self._watched(way, failure, watch)
-        if stopped is not None:
-            way = _joined(way, stopped, braked(trajectory, float(way.time_s[stopped]), STEP_S))
-            failure = self._first_failure(way)
-            end = FlightEnd.INTERRUPTED
-        if failure is not None:
-            self._judge.fail(failure[1])
-            end = FlightEnd.FAILED
-        last = failure[0] if failure is not None else len(way.time_s) - 1
-        times = self._time_s + way.time_s[: last + 1]
-        self._place(way, last)
-        if end is not FlightEnd.FAILED:
-            self._velocity = np.zeros(3)
-            self._judge.hovered(as_vec3(self._position))
-        positions = way.position_m[: last + 1]
-        reason = failure[1].reason if failure is not None else ""
-        return FlightLog(
-            end=end, time_s=times, position_m=positions.copy(), reference_m=positions.copy(), reason=reason
-        )
+        match motion:
+            case FollowTrajectory():
+                try:
+                    check_start(motion.trajectory, as_vec3(self._position))
+                except DeviceError as error:
+                    self._refused = self._ended(motion, MotionEnd.REFUSED, reason=str(error))
+                    return
+                way = sampled(motion.trajectory, time_steps(motion.trajectory.duration_s, STEP_S))
+            case PerformAction():
+                way = hover(self._position, self._yaw, time_steps(motion.dwell_s, _ACT_STEP_S))
+            case Land():
+                way = self._until_touch(descent(self._position, self._yaw, self._floor_m, STEP_S))
+            case TakeOff():
+                way = hover(self._position, self._yaw, np.zeros(2))
+        self._begin(motion, way)
 
-    def act(self, stop: Stop, dwell_s: float) -> None:
-        """Does what the stop is for; the time spent counts."""
-        if self._judge.verdict() is not None:
+    def brake(self) -> None:
+        """Brakes along the trajectory; an act is broken off, a descent stops where it is."""
+        flown = self._flown
+        if flown is None or flown.braked:
             return
-        here = hover(self._position, self._yaw, time_steps(dwell_s, 0.1))
-        failure = self._first_failure(here)
-        self._place(here, failure[0] if failure is not None else len(here.time_s) - 1)
-        if failure is not None:
-            self._judge.fail(failure[1])
+        at = self._row(flown)
+        if isinstance(flown.motion, FollowTrajectory):
+            rest = braked(flown.motion.trajectory, float(flown.way.time_s[at]), STEP_S)
+            flown.way = joined(flown.way, at, rest)
         else:
-            self._judge.acted(stop, as_vec3(self._position))
+            flown.way = joined(flown.way, at, hover(self._position, self._yaw, flown.way.time_s[at : at + 1]))
+        flown.braked = True
+        self._look_ahead(flown)
+
+    def advance(self, until_s: float) -> tuple[MotionEnded, ...]:
+        """Flies on in no time of this machine's clock; see `Vehicle.advance`."""
+        if self._refused is not None:
+            refused, self._refused = self._refused, None
+            return (refused,)
+        flown = self._flown
+        if flown is None:
+            self._hover_until(until_s)
+            return ()
+        end_s = flown.begun_s + float(flown.way.time_s[flown.last])
+        if until_s < end_s - _SOON_S:
+            self._time_s = max(self._time_s, until_s)
+            self._place(flown.way, self._row(flown))
+            return ()
+        self._time_s = max(self._time_s, end_s)
+        self._place(flown.way, flown.last)
+        return (self._finish(flown),)
 
     def hold(self) -> None:
         """Stays where it is."""
         self._velocity = np.zeros(3)
+        self._flown = None
 
     def verdict(self) -> Verdict | None:
         """The failure that has happened, if any."""
@@ -111,54 +152,77 @@ class KinematicSimulator(Vehicle, Judge):
         """The verdict at the end."""
         return self._judge.final()
 
-    def _first_failure(self, way: Reference) -> tuple[int, Verdict] | None:
-        times = self._time_s + way.time_s
+    def _begin(self, motion: Motion, way: Reference) -> None:
+        if self._judge.verdict() is not None:
+            way = hover(self._position, self._yaw, np.zeros(1))
+        flown = _Flown(motion=motion, begun_s=self._time_s, way=way, last=len(way.time_s) - 1, failure=None)
+        self._look_ahead(flown)
+        self._flown = flown
+
+    def _look_ahead(self, flown: _Flown) -> None:
+        """Works out where the motion ends."""
+        verdict = self._judge.verdict()
+        failure = (0, verdict) if verdict is not None else self._first_failure(flown.way, flown.begun_s)
+        flown.last = len(flown.way.time_s) - 1 if failure is None else failure[0]
+        flown.failure = None if failure is None else failure[1]
+
+    def _first_failure(self, way: Reference, begun_s: float) -> tuple[int, Verdict] | None:
+        times = begun_s + way.time_s
         failure = self._judge.first_failure(times, way.position_m)
-        touch = self._obstacles.first_touch(way.position_m, times - self._time_s + self._judge.mission_s(self._time_s))
+        touch = self._obstacles.first_touch(way.position_m, way.time_s + self._judge.mission_s(begun_s))
         if touch is not None and (failure is None or touch[0] <= failure[0]):
             return touch[0], collision(f"'{touch[1]}'")
         return failure
 
-    def _watched(self, way: Reference, failure: tuple[int, Verdict] | None, watch: Watch | None) -> int | None:
-        """The sample at which the watch asked for a stop, if it did before the flight's end or failure."""
-        if watch is None:
-            return None
-        start_s = self._time_s
-        last = failure[0] if failure is not None else len(way.time_s) - 1
-        every = max(round(self._watch_every_s / STEP_S), 1)
-        for sample in range(every, last, every):
-            self._time_s = start_s
-            self._place(way, sample)
-            stop = watch(self.state())
-            self._time_s = start_s
-            if stop:
-                return sample
+    def _until_touch(self, way: Reference) -> Reference:
+        """A descent to the ground, or to right above the first thing below."""
+        touch = self._obstacles.first_touch(way.position_m, way.time_s + self._judge.mission_s(self._time_s))
+        return way if touch is None else way.until(max(touch[0], 1))
+
+    def _finish(self, flown: _Flown) -> MotionEnded:
+        self._flown = None
+        if flown.failure is not None:
+            self._judge.fail(flown.failure)
+            return self._ended(flown.motion, MotionEnd.FAILED, log=_log(flown), reason=flown.failure.reason)
+        self._velocity = np.zeros(3)
+        if isinstance(flown.motion, PerformAction):
+            if not flown.braked:
+                self._judge.acted(flown.motion.stop, as_vec3(self._position))
+        elif not isinstance(flown.motion, TakeOff):
+            self._judge.hovered(as_vec3(self._position))
+        end = MotionEnd.STOPPED if flown.braked else MotionEnd.ARRIVED
+        return self._ended(flown.motion, end, log=_log(flown))
+
+    def _ended(self, motion: Motion, end: MotionEnd, *, log: FlightLog | None = None, reason: str = "") -> MotionEnded:
+        return MotionEnded(time_s=self._time_s, motion=motion.id, end=end, vehicle=self.state(), log=log, reason=reason)
+
+    def _hover_until(self, until_s: float) -> None:
+        self._time_s = max(self._time_s, until_s)
+        failure = self._judge.first_failure(np.array([self._time_s]), self._position[None])
+        if failure is not None:
+            self._judge.fail(failure[1])
+
+    def _row(self, flown: _Flown) -> int:
+        """The row of the way at which the drone is now."""
+        row = int(np.searchsorted(flown.way.time_s, self._time_s - flown.begun_s + _SOON_S, side="right")) - 1
+        return min(max(row, 0), flown.last)
+
+    def _place(self, way: Reference, row: int) -> None:
+        self._position = way.position_m[row].copy()
+        self._velocity = way.velocity_mps[row].copy()
+        self._yaw = float(way.yaw_rad[row])
+
+
+def _log(flown: _Flown) -> FlightLog | None:
+    """What was flown; None for acts."""
+    if isinstance(flown.motion, PerformAction | TakeOff):
         return None
-
-    def _place(self, way: Reference, sample: int) -> None:
-        self._time_s += float(way.time_s[sample])
-        self._position = way.position_m[sample].copy()
-        self._velocity = way.velocity_mps[sample].copy()
-        self._yaw = float(way.yaw_rad[sample])
-
-    def _grounded(self) -> FlightLog:
-        verdict = self._judge.verdict()
-        here = self._position[None].copy()
-        return FlightLog(
-            end=FlightEnd.FAILED,
-            time_s=np.array([self._time_s]),
-            position_m=here,
-            reference_m=here.copy(),
-            reason=verdict.reason if verdict is not None else "",
-        )
-
-
-def _joined(way: Reference, at: int, rest: Reference) -> Reference:
-    """The way up to a sample, then the rest, whose first sample is that one."""
-    return Reference(
-        time_s=np.concatenate([way.time_s[:at], rest.time_s]),
-        position_m=np.concatenate([way.position_m[:at], rest.position_m]),
-        velocity_mps=np.concatenate([way.velocity_mps[:at], rest.velocity_mps]),
-        acceleration_mps2=np.concatenate([way.acceleration_mps2[:at], rest.acceleration_mps2]),
-        yaw_rad=np.concatenate([way.yaw_rad[:at], rest.yaw_rad]),
+    ends = {True: FlightEnd.FAILED, False: FlightEnd.INTERRUPTED if flown.braked else FlightEnd.ARRIVED}
+    positions = flown.way.position_m[: flown.last + 1]
+    return FlightLog(
+        end=ends[flown.failure is not None],
+        time_s=flown.begun_s + flown.way.time_s[: flown.last + 1],
+        position_m=positions.copy(),
+        reference_m=positions.copy(),
+        reason=flown.failure.reason if flown.failure is not None else "",
     )

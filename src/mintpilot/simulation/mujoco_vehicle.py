@@ -2,31 +2,34 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from mintpilot.core.errors import DeviceError
 from mintpilot.core.geometry import Floats
+from mintpilot.core.inputs import MotionEnded
 from mintpilot.core.mission import Verdict
+from mintpilot.core.motion import FollowTrajectory, Land, Motion, MotionEnd, PerformAction, TakeOff
 from mintpilot.core.observation import Frame
-from mintpilot.core.plan import Stop
-from mintpilot.core.ports import Camera, Judge, Vehicle, Watch
-from mintpilot.core.trajectory import FlightEnd, FlightLog, Trajectory, VehicleState
+from mintpilot.core.ports import Camera, Judge, Vehicle
+from mintpilot.core.trajectory import FlightEnd, FlightLog, VehicleState
 from mintpilot.simulation.control import slewed
 from mintpilot.simulation.judge import SceneJudge
 from mintpilot.simulation.mujoco_drone import Gusts, MujocoDrone
 from mintpilot.simulation.quadrotor import Airframe, add_quadrotor
-from mintpilot.simulation.reference import Reference, as_vec3, braked, check_start, hover, sampled, time_steps
+from mintpilot.simulation.reference import Reference, as_vec3, braked, check_start, descent, hover, sampled, time_steps
 from mintpilot.simulation.render import SceneRenderer
 from mintpilot.simulation.scene import FlightRules, Scene
 from mintpilot.simulation.world import build_world, place_late_solids
 
 _JUDGED_EVERY, _LOGGED_EVERY = 10, 5  # steps
-_SETTLE_S, _SETTLED_M, _SETTLED_MPS = 2.0, 0.06, 0.1
+_SETTLE_S, _SETTLE_STEP_S, _SETTLED_M, _SETTLED_MPS = 2.0, 0.1, 0.06, 0.1
 _YAW_RATE_RAD_S = 2.0
+_ROUNDING = 1e-6  # steps
 
 
 class MujocoSimulator(Vehicle, Camera, Judge):
@@ -42,7 +45,6 @@ class MujocoSimulator(Vehicle, Camera, Judge):
         seed: of noise and gusts: the same seed and calls give the same flight.
         spec: an editable world (``mujoco.MjSpec``) of the same scene without a drone; None: built from the scene.
         camera_size: width and height of the pictures, pixels.
-        watch_every_s: time between calls of a watch, seconds.
 
     Raises:
         MissingPartError: MuJoCo is not installed.
@@ -56,7 +58,6 @@ class MujocoSimulator(Vehicle, Camera, Judge):
         seed: int,
         spec: Any = None,
         camera_size: tuple[int, int] = (320, 240),
-        watch_every_s: float = 0.5,
     ) -> None:
         world = build_world(scene) if spec is None else spec
         airframe = Airframe()
@@ -64,7 +65,8 @@ class MujocoSimulator(Vehicle, Camera, Judge):
         self._drone = MujocoDrone(world.compile(), airframe)
         self._scene, self._rules, self._seed, self._camera_size = scene, rules, seed, camera_size
         self._judge = SceneJudge(scene, rules)
-        self._watch_every = max(round(watch_every_s / self._drone.step_s), 1)
+        self._flown: _Flown | None = None
+        self._refused: MotionEnded | None = None
         self._rng, self._state_rng, gust_rng = (np.random.default_rng([seed, stream]) for stream in range(3))
         self._gusts = Gusts(rules.wind_n, self._drone.step_s, gust_rng)
         self._goal_m: Floats = np.asarray(scene.start_m, float)
@@ -89,48 +91,79 @@ class MujocoSimulator(Vehicle, Camera, Judge):
             endurance_left_s=self._judge.endurance_left_s(drone.time_s),
         )
 
-    def follow(self, trajectory: Trajectory, watch: Watch | None = None) -> FlightLog:
-        """Flies the trajectory; returns when it hovers at its end, has stopped, or has failed.
+    def command(self, motion: Motion) -> None:
+        """Begins a motion.
 
         Raises:
-            InputError: the trajectory is empty, malformed or not finite.
-            DeviceError: it does not begin where the vehicle is, or the simulator is closed.
-        """
-        self._check_open()
-        check_start(trajectory, as_vec3(self._drone.position_m))
-        step_s = self._drone.step_s
-        way = sampled(trajectory, time_steps(trajectory.duration_s, step_s)[1:])
-        log = _Log()
-        log.add(self._drone.time_s, self._drone.position_m, trajectory.position_m[0])
-        stopped = self._fly(way, log, watch)
-        end = FlightEnd.ARRIVED
-        if stopped is not None:
-            end = FlightEnd.INTERRUPTED
-            way = braked(trajectory, float(way.time_s[stopped]), step_s)
-            self._fly(way, log)
-        self._settle(float(way.yaw_rad[-1]), log)
-        verdict = self.verdict()
-        if verdict is not None:
-            return log.ended(FlightEnd.FAILED, verdict.reason)
-        self._judge.hovered(as_vec3(self._drone.position_m))
-        return log.ended(end)
-
-    def act(self, stop: Stop, dwell_s: float) -> None:
-        """Does what the stop is for while hovering for ``dwell_s`` seconds.
-
-        Raises:
+            InputError: a trajectory is empty, malformed or not finite.
             DeviceError: the simulator is closed.
         """
         self._check_open()
-        times = time_steps(dwell_s, self._drone.step_s)[1:]
-        self._fly(hover(self._goal_m, self._drone.yaw_rad, times), _Log())
-        if self.verdict() is None:
-            self._judge.acted(stop, as_vec3(self._drone.position_m))
+        drone, step_s = self._drone, self._drone.step_s
+        log = _Log()
+        match motion:
+            case FollowTrajectory(trajectory=trajectory):
+                try:
+                    check_start(trajectory, as_vec3(drone.position_m))
+                except DeviceError as error:
+                    self._refused = self._ended(motion, MotionEnd.REFUSED, reason=str(error))
+                    return
+                way = sampled(trajectory, time_steps(trajectory.duration_s, step_s)[1:])
+                log.add(drone.time_s, drone.position_m, trajectory.position_m[0])
+            case PerformAction():
+                way = hover(self._goal_m, drone.yaw_rad, time_steps(motion.dwell_s, step_s)[1:])
+            case Land():
+                way = descent(self._goal_m, drone.yaw_rad, self._scene.volume.lo_m[2], step_s)
+            case TakeOff():
+                way = hover(self._goal_m, drone.yaw_rad, np.zeros(0))
+        self._flown = _Flown(motion=motion, way=way, rows=self._rows(way), log=log)
+
+    def brake(self) -> None:
+        """Brakes along the trajectory; an act is broken off, a descent stops where it is."""
+        flown = self._flown
+        if flown is None or flown.braked:
+            return
+        step_s, at = self._drone.step_s, max(flown.row - 1, 0)
+        if isinstance(flown.motion, FollowTrajectory):
+            flown.way = braked(flown.motion.trajectory, float(flown.way.time_s[at]), step_s)
+        else:
+            flown.way = hover(self._goal_m, self._drone.yaw_rad, np.zeros(0))
+        flown.rows, flown.row, flown.braked, flown.settling_s = self._rows(flown.way), 0, True, 0.0
+
+    def advance(self, until_s: float) -> tuple[MotionEnded, ...]:
+        """Steps the physics on; see `Vehicle.advance`."""
+        self._check_open()
+        if self._refused is not None:
+            refused, self._refused = self._refused, None
+            return (refused,)
+        flown, step_s = self._flown, self._drone.step_s
+        left = math.ceil((until_s - self._drone.time_s) / step_s - _ROUNDING)
+        left = max(left, int(until_s > self._drone.time_s))  # never stand still for want of a whole step
+        if flown is None:
+            self._hover(left, self._drone.yaw_rad, _Log())
+            return ()
+        while left > 0 or (flown.row >= len(flown.rows) and self._is_over(flown)):
+            if self.verdict() is not None or (flown.row >= len(flown.rows) and self._is_over(flown)):
+                self._flown = None
+                return (self._finished(flown),)
+            if flown.row < len(flown.rows):
+                n = min(left, len(flown.rows) - flown.row)
+                self._fly(flown.rows[flown.row : flown.row + n], flown.log)
+                flown.row += n
+            else:
+                n = min(left, round(_SETTLE_STEP_S / step_s))
+                self._hover(n, float(flown.rows[-1, 9]) if len(flown.rows) else self._drone.yaw_rad, flown.log)
+                flown.settling_s += n * step_s
+            left -= n
+        return ()
 
     def hold(self) -> None:
         """Comes to rest where it should be; does nothing after a failure."""
-        if not self._closed:
-            self._settle(self._drone.yaw_rad, _Log())
+        self._flown = None
+        settling_s, yaw_rad = 0.0, self._drone.yaw_rad
+        while not self._closed and self.verdict() is None and settling_s < _SETTLE_S and not self._is_calm():
+            self._hover(round(_SETTLE_STEP_S / self._drone.step_s), yaw_rad, _Log())
+            settling_s += _SETTLE_STEP_S
 
     def capture(self) -> Frame:
         """What the drone's camera sees now; the camera's place is known as well as the drone's.
@@ -173,38 +206,61 @@ class MujocoSimulator(Vehicle, Camera, Judge):
     def __exit__(self, *_: object) -> None:
         self.close()
 
-    def _fly(self, way: Reference, log: _Log, watch: Watch | None = None) -> int | None:
-        """Steps along a reference, one step a row, until its end, a failure, or the watch's wish: then its row."""
-        drone, n = self._drone, len(way.time_s)
+    def _rows(self, way: Reference) -> Floats:
+        """A reference as the controller takes it (n, 10): position, velocity, acceleration, heading."""
+        yaw = slewed(way.yaw_rad, self._drone.yaw_rad, _YAW_RATE_RAD_S * self._drone.step_s)
+        return np.column_stack([way.position_m, way.velocity_mps, way.acceleration_mps2, yaw])
+
+    def _fly(self, rows: Floats, log: _Log) -> None:
+        """Steps along a reference, one step a row, until its end or a failure."""
+        drone, n = self._drone, len(rows)
         noise = self._rng.normal(0.0, self._rules.position_noise_m, (n, 6))
         gusts = self._gusts.draw(n)
-        yaw = slewed(way.yaw_rad, drone.yaw_rad, _YAW_RATE_RAD_S * drone.step_s)
-        rows = np.column_stack([way.position_m, way.velocity_mps, way.acceleration_mps2, yaw])
         recent: list[Floats] = []
         for i in range(n):
             if self.verdict() is not None:
-                return None
+                return
             touched = drone.step(rows[i], noise[i], gusts[i])
-            self._goal_m = way.position_m[i]
+            self._goal_m = rows[i, :3]
             recent.append(drone.position_m.copy())
             if touched or len(recent) == _JUDGED_EVERY or i == n - 1:
                 self._judge_recent(recent, touched)
             if (i + 1) % _LOGGED_EVERY == 0 or i == n - 1 or self.verdict() is not None:
-                log.add(drone.time_s, drone.position_m, way.position_m[i])
-            due = (i + 1) % self._watch_every == 0 and i < n - 1 and self.verdict() is None
-            if watch is not None and due and watch(self.state()):
-                return i
-        return None
+                log.add(drone.time_s, drone.position_m, rows[i, :3])
 
-    def _settle(self, yaw_rad: float, log: _Log) -> None:
-        """Hovers at the last goal until it is at rest there, for a while at most."""
+    def _hover(self, steps: int, yaw_rad: float, log: _Log) -> None:
+        """Hovers at the last goal for so many steps."""
+        if steps > 0:
+            self._fly(self._rows(hover(self._goal_m, yaw_rad, np.zeros(steps))), log)
+
+    def _is_calm(self) -> bool:
         drone = self._drone
-        for _ in range(round(_SETTLE_S / 0.1)):
-            off = float(np.linalg.norm(drone.position_m - self._goal_m))
-            calm = off < _SETTLED_M and float(np.linalg.norm(drone.velocity_mps)) < _SETTLED_MPS
-            if calm or self.verdict() is not None:
-                return
-            self._fly(hover(self._goal_m, yaw_rad, time_steps(0.1, drone.step_s)[1:]), log)
+        off = float(np.linalg.norm(drone.position_m - self._goal_m))
+        return off < _SETTLED_M and float(np.linalg.norm(drone.velocity_mps)) < _SETTLED_MPS
+
+    def _is_over(self, flown: _Flown) -> bool:
+        """Whether a motion whose rows are flown is at rest: flights are waited for, for a while at most."""
+        if isinstance(flown.motion, PerformAction | TakeOff):
+            return True
+        return flown.settling_s >= _SETTLE_S or self._is_calm()
+
+    def _finished(self, flown: _Flown) -> MotionEnded:
+        verdict, motion = self.verdict(), flown.motion
+        if verdict is not None:
+            return self._ended(motion, MotionEnd.FAILED, log=flown.ended(FlightEnd.FAILED, verdict.reason))
+        here = as_vec3(self._drone.position_m)
+        if isinstance(motion, PerformAction) and not flown.braked:
+            self._judge.acted(motion.stop, here)
+        elif isinstance(motion, FollowTrajectory | Land):
+            self._judge.hovered(here)
+        if flown.braked:
+            return self._ended(motion, MotionEnd.STOPPED, log=flown.ended(FlightEnd.INTERRUPTED))
+        return self._ended(motion, MotionEnd.ARRIVED, log=flown.ended(FlightEnd.ARRIVED))
+
+    def _ended(self, motion: Motion, end: MotionEnd, *, log: FlightLog | None = None, reason: str = "") -> MotionEnded:
+        state = self.state()
+        reason = reason or (log.reason if log is not None else "")
+        return MotionEnded(time_s=state.time_s, motion=motion.id, end=end, vehicle=state, log=log, reason=reason)
 
     def _judge_recent(self, recent: list[Floats], touched: str) -> None:
         """Judges the positions since the last time; the touch, if any, came with the last of them."""
@@ -233,6 +289,25 @@ class MujocoSimulator(Vehicle, Camera, Judge):
             raise DeviceError("the simulator is closed: make a new one")
 
 
+@dataclass(slots=True)
+class _Flown:
+    """The motion that is being made."""
+
+    motion: Motion
+    way: Reference
+    rows: Floats
+    """As the controller takes it (n, 10)."""
+    log: _Log
+    row: int = 0
+    """The next one."""
+    settling_s: float = 0.0
+    braked: bool = False
+
+    def ended(self, end: FlightEnd, reason: str = "") -> FlightLog | None:
+        """What was flown; None for acts and for what was not begun."""
+        return None if isinstance(self.motion, PerformAction | TakeOff) else self.log.ended(end, reason)
+
+
 class _Log:
     """Collects true places and where they should have been."""
 
@@ -243,11 +318,11 @@ class _Log:
         self._rows.append((time_s, position_m.copy(), reference_m.copy()))
 
     def ended(self, end: FlightEnd, reason: str = "") -> FlightLog:
-        times, positions, references = zip(*self._rows, strict=True)
+        times, positions, references = zip(*self._rows, strict=True) if self._rows else ((), (), ())
         return FlightLog(
             end=end,
             time_s=np.array(times),
-            position_m=np.array(positions),
-            reference_m=np.array(references),
+            position_m=np.array(positions).reshape(-1, 3),
+            reference_m=np.array(references).reshape(-1, 3),
             reason=reason,
         )

@@ -14,6 +14,10 @@ START_TOLERANCE_M = 0.5
 """A trajectory must begin at most this far from the vehicle, metres."""
 BRAKING_MPS2 = 2.0
 """Hardest braking of an interrupted flight, besides what its own curve takes."""
+DESCENT_MPS = 0.5
+"""Fastest descent to the ground."""
+LANDED_M = 0.15
+"""Height of the drone's centre above the floor once it stands on its legs, metres."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -30,6 +34,16 @@ class Reference:
     """(n, 3)."""
     yaw_rad: Floats
     """(n,)."""
+
+    def until(self, rows: int) -> Reference:
+        """The first rows of it."""
+        return Reference(
+            time_s=self.time_s[:rows],
+            position_m=self.position_m[:rows],
+            velocity_mps=self.velocity_mps[:rows],
+            acceleration_mps2=self.acceleration_mps2[:rows],
+            yaw_rad=self.yaw_rad[:rows],
+        )
 
 
 def check_start(trajectory: Trajectory, position_m: Vec3) -> None:
@@ -115,6 +129,35 @@ def braked(trajectory: Trajectory, from_s: float, step_s: float) -> Reference:
         velocity_mps=along.velocity_mps * rate,
         acceleration_mps2=along.acceleration_mps2 * rate**2 - along.velocity_mps * slowing,
         yaw_rad=along.yaw_rad,
+    )
+
+
+def joined(way: Reference, at: int, rest: Reference) -> Reference:
+    """The way up to a row, then the rest, whose first row is that one."""
+    return Reference(
+        time_s=np.concatenate([way.time_s[:at], rest.time_s]),
+        position_m=np.concatenate([way.position_m[:at], rest.position_m]),
+        velocity_mps=np.concatenate([way.velocity_mps[:at], rest.velocity_mps]),
+        acceleration_mps2=np.concatenate([way.acceleration_mps2[:at], rest.acceleration_mps2]),
+        yaw_rad=np.concatenate([way.yaw_rad[:at], rest.yaw_rad]),
+    )
+
+
+def descent(position_m: Floats, yaw_rad: float, floor_m: float, step_s: float) -> Reference:
+    """Straight down from a place (3,) to `LANDED_M` above the floor, in steps, with smooth start and end."""
+    depth = max(float(position_m[2]) - floor_m - LANDED_M, 0.0)
+    time_s = time_steps(max(1.5 * depth / DESCENT_MPS, step_s), step_s)
+    t = time_s / time_s[-1]
+    way = hover(position_m, yaw_rad, time_s)
+    height, speed = np.zeros((len(t), 3)), np.zeros((len(t), 3))
+    height[:, 2] = depth * (3 * t**2 - 2 * t**3)
+    speed[:, 2] = depth * (6 * t - 6 * t**2) / time_s[-1]
+    return Reference(
+        time_s=time_s,
+        position_m=way.position_m - height,
+        velocity_mps=-speed,
+        acceleration_mps2=way.acceleration_mps2,
+        yaw_rad=way.yaw_rad,
     )
 
 

@@ -8,7 +8,7 @@ from mintpilot.core.query import Answer, Evidence, Query
 from mintpilot.reasoning.belief import condition
 
 
-def with_surplus(
+def with_extra_evidence(
     before: Belief, after: Belief, query: Query, answer: Answer, settings: AskingSettings
 ) -> tuple[Belief, bool]:
     """The belief with what an answer says beyond the question, and whether that was refused as a contradiction.

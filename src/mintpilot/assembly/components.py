@@ -1,8 +1,8 @@
-"""From a world to a crew: vehicle, eyes, strategy, operator, recorder, ready for the loop."""
+"""From a world to the components of a mission: vehicle, map source, strategy, operators, recorder."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from contextlib import AbstractContextManager, ExitStack
 from dataclasses import dataclass, field
 from enum import StrEnum
@@ -15,17 +15,19 @@ from mintpilot.assembly.talk import Talk
 from mintpilot.assembly.worlds import World
 from mintpilot.core.geometry import GridFrame
 from mintpilot.core.ports import Operator, Perception, Recorder
-from mintpilot.core.semantic_map import SemanticMap
+from mintpilot.elicitation.wording import word_question
 from mintpilot.interaction.scripted import ScriptedOperator
 from mintpilot.mapping.builder import MapBuilder
-from mintpilot.mission.eyes import CameraEyes, Eyes, FixedEyes
-from mintpilot.mission.loop import Crew
-from mintpilot.mission.mind import Thinking
-from mintpilot.mission.survey import survey
+from mintpilot.mission.components import MissionComponents
+from mintpilot.mission.deliberation import DeliberationParts
+from mintpilot.mission.map_source import CameraMapSource, GivenMap, MapSource
 from mintpilot.mission_file.schema import OperatorSpec
 from mintpilot.simulation.kinematic import KinematicSimulator
 from mintpilot.simulation.mujoco_vehicle import MujocoSimulator
-from mintpilot.simulation.scene_eyes import SceneEyes
+from mintpilot.simulation.scene_map_source import SceneMapSource
+
+TAKE_OFF_CLEAR_M = 1.0
+"""Free space around the hover point that whoever puts the drone down vouches for, metres."""
 
 
 class VehicleChoice(StrEnum):
@@ -50,7 +52,7 @@ class Choices:
     camera_size: tuple[int, int] = (320, 240)
 
 
-def thinking_parts(world: World, choices: Choices, talk: Talk | None = None) -> Thinking:
+def deliberation_parts(world: World, choices: Choices, talk: Talk | None = None) -> DeliberationParts:
     """The parts that deliberation is done with; ``talk`` may bring somebody who proposes queries.
 
     Raises:
@@ -58,7 +60,7 @@ def thinking_parts(world: World, choices: Choices, talk: Talk | None = None) -> 
         InputError: the strategy does not take those arguments.
     """
     asking = world.mission.asking
-    return Thinking(
+    return DeliberationParts(
         mission=world.mission,
         task=world.task,
         planner=load("planner", choices.planner)(),
@@ -67,6 +69,7 @@ def thinking_parts(world: World, choices: Choices, talk: Talk | None = None) -> 
         objective=make_objective(asking.objective, seed=world.seed),
         groups=world.groups,
         proposer=talk.proposer if talk is not None else None,
+        word=talk.word if talk is not None else word_question,
     )
 
 
@@ -82,91 +85,90 @@ def scripted_operator(world: World, spec: OperatorSpec) -> ScriptedOperator:
     )
 
 
-def crew_for(
-    world: World, choices: Choices, *, operator: Operator, recorder: Recorder, talk: Talk | None = None
-) -> AbstractContextManager[Crew]:
-    """A crew, as a context that closes the simulator, and the language model of ``talk``, in the end.
+def components_for(
+    world: World,
+    choices: Choices,
+    *,
+    operators: tuple[Operator, ...],
+    recorder: Recorder,
+    talk: Talk | None = None,
+    digests: bool = False,
+) -> AbstractContextManager[MissionComponents]:
+    """The components of a mission, as a context that closes the simulator, and the language model of ``talk``.
 
     Args:
         world: what is flown in.
         choices: which parts.
-        operator: who answers.
+        operators: who answers and gives orders.
         recorder: told about everything.
         talk: the mission's language; None: English by template.
+        digests: whether the record is to be replayed.
 
     Raises:
         MissingPartError: MuJoCo is chosen but not installed.
     """
-    return _CrewContext(world, choices, operator, recorder, talk or Talk())
+    return _Components(world, choices, operators, recorder, talk or Talk(), digests)
 
 
-class _CrewContext(AbstractContextManager[Crew]):
-    def __init__(self, world: World, choices: Choices, operator: Operator, recorder: Recorder, talk: Talk) -> None:
-        self._world, self._choices, self._operator, self._recorder = world, choices, operator, recorder
-        self._talk = talk
+class _Components(AbstractContextManager[MissionComponents]):
+    def __init__(
+        self,
+        world: World,
+        choices: Choices,
+        operators: tuple[Operator, ...],
+        recorder: Recorder,
+        talk: Talk,
+        digests: bool,
+    ) -> None:
+        self._world, self._choices, self._operators, self._recorder = world, choices, operators, recorder
+        self._talk, self._digests = talk, digests
         self._stack = ExitStack()
 
-    def __enter__(self) -> Crew:
+    def __enter__(self) -> MissionComponents:
         world, choices = self._world, self._choices
         self._stack.callback(self._talk.close)
-        parts = thinking_parts(world, choices, self._talk)
         if choices.vehicle is VehicleChoice.MUJOCO and not world.is_map:
             simulator = MujocoSimulator(world.scene, world.rules, seed=world.seed, camera_size=choices.camera_size)
             self._stack.callback(simulator.close)
             perception: Perception = load("perception", choices.perception)()
             builder = map_builder(world)
-            eyes = CameraEyes(camera=simulator, perception=perception, builder=builder, recorder=self._recorder)
-            return self._crew(parts, simulator, eyes, self._surveyed(simulator, eyes), watch_map=True)
+            surveys = world.mission.survey is not None
+            if surveys:
+                # Whoever puts the drone down vouches for the space around it: the camera never sees it.
+                builder.mark_flown(np.asarray([world.mission.start_m], float), TAKE_OFF_CLEAR_M)
+            source = CameraMapSource(camera=simulator, perception=perception, builder=builder, recorder=self._recorder)
+            return self._made(simulator, source, surveys=surveys, watch_map=True)
         kinematic = KinematicSimulator(world.scene, world.rules, seed=world.seed)
-        seen: Eyes = FixedEyes(world.map) if world.is_map else SceneEyes(world.scene, kinematic.state)
+        given: MapSource = GivenMap(world.map)
+        if not world.is_map:
+            given = SceneMapSource(world.scene, world.map, kinematic.state)
         changes = any(solid.appears_s > 0 for solid in world.scene.solids)
-
-        def given() -> SemanticMap:
-            kinematic.begin_mission()
-            return world.map
-
-        return self._crew(parts, kinematic, seen, given, watch_map=changes)
+        return self._made(kinematic, given, surveys=False, watch_map=changes)
 
     def __exit__(self, *_: object) -> None:
         self._stack.close()
 
-    def _surveyed(self, simulator: MujocoSimulator, eyes: CameraEyes) -> Callable[[], SemanticMap]:
-        def fly() -> SemanticMap:
-            mission = self._world.mission
-            if mission.survey is None:
-                first = eyes.look(None)
-            else:
-                first = survey(mission, mission.survey, vehicle=simulator, eyes=eyes, recorder=self._recorder)
-            simulator.begin_mission()
-            return first
-
-        return fly
-
-    def _crew(
-        self,
-        parts: Thinking,
-        simulator: MujocoSimulator | KinematicSimulator,
-        eyes: Eyes,
-        first_map: Callable[[], SemanticMap],
-        *,
-        watch_map: bool,
-    ) -> Crew:
-        return Crew(
-            thinking=parts,
+    def _made(
+        self, simulator: MujocoSimulator | KinematicSimulator, source: MapSource, *, surveys: bool, watch_map: bool
+    ) -> MissionComponents:
+        return MissionComponents(
+            parts=deliberation_parts(self._world, self._choices, self._talk),
             vehicle=simulator,
-            eyes=eyes,
-            operator=self._operator,
+            map_source=source,
+            operators=self._operators,
             recorder=self._recorder,
-            survey=first_map,
+            begin_task=simulator.begin_mission,
             judge=simulator,
-            word=self._talk.word,
             improve=self._talk.improve,
             remarks=self._talk.take_remarks,
-            language=self._talk.lang,
-            language_model=self._talk.model_name,
+            surveys=surveys,
             simulated=True,
             watch_map=watch_map,
+            digests=self._digests,
             strategy_name=strategy_label(self._choices.strategy, self._choices.strategy_arguments),
+            planner_name=self._choices.planner,
+            language=self._talk.lang,
+            language_model=self._talk.model_name,
             seed=self._world.seed,
         )
 

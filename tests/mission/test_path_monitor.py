@@ -12,8 +12,8 @@ from mintpilot.core.observation import RegionKind
 from mintpilot.core.plan import VehicleLimits
 from mintpilot.core.semantic_map import Cell, Knowledge, Region, SemanticMap
 from mintpilot.core.trajectory import VehicleState
-from mintpilot.mission.lookout import PATIENCE_LOOKS, Lookout
-from mintpilot.mission.retreat import is_stranded, way_back
+from mintpilot.mission.path_monitor import CONFIRMING_LOOKS, PathMonitor
+from mintpilot.mission.way_back import is_stranded, way_back
 from mintpilot.planning.checks import check_path
 from mintpilot.planning.flyable import known_flyable
 from mintpilot.planning.reach import LookAround, next_view, way_to
@@ -45,32 +45,32 @@ WAY = np.column_stack([np.linspace(1.0, 9.0, 81), np.full(81, 2.0), np.full(81, 
 
 
 def test_a_free_way_is_no_trouble() -> None:
-    lookout = Lookout(WAY, LIMITS)
-    assert [lookout.trouble(tuple(p), hall()) for p in WAY[::10]] == [""] * 9
+    monitor = PathMonitor(WAY, LIMITS)
+    assert [monitor.assess(hall(), tuple(p)) for p in WAY[::10]] == [""] * 9
 
 
 def test_trouble_close_ahead_stops_at_once() -> None:
-    assert "smoke-1" in Lookout(WAY, LIMITS).trouble((1.0, 2.0, 1.0), with_cloud(hall(), (2.0, 3.0)))
+    assert "smoke-1" in PathMonitor(WAY, LIMITS).assess(with_cloud(hall(), (2.0, 3.0)), (1.0, 2.0, 1.0))
 
 
 def test_trouble_far_ahead_must_be_seen_again() -> None:
-    lookout, clouded = Lookout(WAY, LIMITS), with_cloud(hall(), (7.0, 8.0))
-    looks = [lookout.trouble((1.0, 2.0, 1.0), clouded) for _ in range(PATIENCE_LOOKS)]
-    assert looks[:-1] == [""] * (PATIENCE_LOOKS - 1)
+    monitor, clouded = PathMonitor(WAY, LIMITS), with_cloud(hall(), (7.0, 8.0))
+    looks = [monitor.assess(clouded, (1.0, 2.0, 1.0)) for _ in range(CONFIRMING_LOOKS)]
+    assert looks[:-1] == [""] * (CONFIRMING_LOOKS - 1)
     assert looks[-1]
 
 
 def test_trouble_that_flickers_is_forgotten() -> None:
-    lookout, clouded = Lookout(WAY, LIMITS), with_cloud(hall(), (7.0, 8.0))
+    monitor, clouded = PathMonitor(WAY, LIMITS), with_cloud(hall(), (7.0, 8.0))
     for world in (clouded, hall(), clouded, hall()):
-        assert lookout.trouble((1.0, 2.0, 1.0), world) == ""
+        assert monitor.assess(world, (1.0, 2.0, 1.0)) == ""
 
 
 def test_what_is_behind_is_no_trouble() -> None:
-    lookout = Lookout(WAY, LIMITS)
+    monitor = PathMonitor(WAY, LIMITS)
     for x in (2.0, 4.0, 6.0):
-        lookout.trouble((x, 2.0, 1.0), hall())
-    assert lookout.trouble((6.0, 2.0, 1.0), with_cloud(hall(), (1.0, 2.0))) == ""
+        monitor.assess(hall(), (x, 2.0, 1.0))
+    assert monitor.assess(with_cloud(hall(), (1.0, 2.0)), (6.0, 2.0, 1.0)) == ""
 
 
 def test_a_cloud_around_the_drone_strands_it_and_it_goes_back() -> None:

@@ -1,4 +1,4 @@
-"""How a mission sees: something that turns the present view into a newer map."""
+"""Where the map comes from: what turns the present view into a newer one."""
 
 from __future__ import annotations
 
@@ -12,19 +12,23 @@ from mintpilot.core.semantic_map import SemanticMap
 from mintpilot.mapping.builder import MapBuilder
 
 
-class Eyes(Protocol):
-    """Keeps the map up to date. Called on the ground, at the camera's rate in flight, and at every stop."""
+class MapSource(Protocol):
+    """Keeps the map up to date. Called by the loop: before the survey, at the camera's rate in flight, at stops."""
 
-    def look(self, previous: SemanticMap | None) -> SemanticMap:
-        """The map after the present view; knowledge and names are carried over from ``previous``."""
+    def look(self) -> None:
+        """Takes in the present view. Raises `DeviceError` when the camera is gone."""
+        ...
+
+    def draw(self, previous: SemanticMap | None) -> SemanticMap:
+        """The map of all that was taken in; knowledge and names are carried over from ``previous``."""
         ...
 
     def flown(self, points_m: Floats, radius_m: float) -> None:
-        """The vehicle has been at these points (n, 3) without touching anything: they are free."""
+        """The vehicle has been at these points (n, 3), metres, without touching anything: they are free."""
         ...
 
 
-class CameraEyes:
+class CameraMapSource(MapSource):
     """Picture → detections → voxels.
 
     Attributes:
@@ -38,8 +42,8 @@ class CameraEyes:
         self._recorder = recorder
         self._count = 0
 
-    def glance(self) -> None:
-        """Takes in the present view without drawing up a map of it: cheaper than `look`."""
+    def look(self) -> None:
+        """See `MapSource.look`."""
         frame = self._camera.capture()
         begun = time.perf_counter()
         detections = self._perception.detect(frame, self._count)
@@ -50,32 +54,30 @@ class CameraEyes:
         self._recorder.record(Timed(stage="mapping", seconds=time.perf_counter() - seen))
         self._count += 1
 
-    def look(self, previous: SemanticMap | None) -> SemanticMap:
-        """See `Eyes.look`."""
-        self.glance()
-        return self.redraw(previous)
-
-    def redraw(self, previous: SemanticMap | None) -> SemanticMap:
-        """The map of all that was taken in so far."""
+    def draw(self, previous: SemanticMap | None) -> SemanticMap:
+        """See `MapSource.draw`."""
         begun = time.perf_counter()
         newer = self.builder.snapshot(previous)
         self._recorder.record(Timed(stage="mapping", seconds=time.perf_counter() - begun))
         return newer
 
     def flown(self, points_m: Floats, radius_m: float) -> None:
-        """See `Eyes.flown`."""
+        """See `MapSource.flown`."""
         self.builder.mark_flown(points_m, radius_m)
 
 
-class FixedEyes:
-    """For a map that was given and does not change."""
+class GivenMap(MapSource):
+    """A map that was given and does not change."""
 
     def __init__(self, given: SemanticMap) -> None:
         self._given = given
 
-    def look(self, previous: SemanticMap | None) -> SemanticMap:
-        """See `Eyes.look`."""
+    def look(self) -> None:
+        """There is nothing to see."""
+
+    def draw(self, previous: SemanticMap | None) -> SemanticMap:
+        """See `MapSource.draw`."""
         return self._given if previous is None else previous
 
     def flown(self, points_m: Floats, radius_m: float) -> None:
-        """See `Eyes.flown`; a given map learns nothing from it."""
+        """A given map learns nothing from it."""

@@ -1,4 +1,4 @@
-"""Eyes of the kinematic drone: no pictures, but whatever comes near is noticed."""
+"""The map of the kinematic drone: no pictures, but whatever comes near is noticed."""
 
 from __future__ import annotations
 
@@ -17,23 +17,28 @@ RANGE_M = 6.0
 """How far the drone sees what has changed, metres."""
 
 
-class SceneEyes:
+class SceneMapSource:
     """Turns what has come into the world within `RANGE_M` into a newer map; everything else stays as it was.
 
     Args:
         scene: the world.
+        given: the first map, that of a perfect survey.
         state: where the drone is; its clock runs from the start of the mission.
     """
 
-    def __init__(self, scene: Scene, state: Callable[[], VehicleState]) -> None:
+    def __init__(self, scene: Scene, given: SemanticMap, state: Callable[[], VehicleState]) -> None:
         self._scene = scene
+        self._given = given
         self._state = state
         self._times = sorted({solid.appears_s for solid in scene.solids})
 
-    def look(self, previous: SemanticMap | None) -> SemanticMap:
-        """The map after a look around; without a previous one, the perfect survey's of 0.2 m voxels."""
+    def look(self) -> None:
+        """There is no camera: what is near shows in `draw`."""
+
+    def draw(self, previous: SemanticMap | None) -> SemanticMap:
+        """The map after a look around; the first time the one that was given."""
         if previous is None:
-            return map_of_scene(self._scene, 0.2)
+            return self._given
         state = self._state()
         if len(self._times) < 2 or state.time_s < self._times[1]:
             return previous

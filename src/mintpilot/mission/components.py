@@ -1,0 +1,75 @@
+"""The components of a mission: everything that the loop works with."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from mintpilot.core.events import MissionStarted
+from mintpilot.core.ports import Judge, Operator, Recorder, Vehicle
+from mintpilot.mission.deliberation import DeliberationParts
+from mintpilot.mission.map_source import MapSource
+from mintpilot.mission.rewording import Improve
+from mintpilot.mission.state import Setup
+from mintpilot.mission.worker import InlineWorker, Worker
+
+
+def _nothing() -> None:
+    """Does nothing."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MissionComponents:
+    """Ports and settings of one mission."""
+
+    parts: DeliberationParts
+    vehicle: Vehicle
+    map_source: MapSource
+    operators: tuple[Operator, ...]
+    """All that may answer and give orders; the first answer counts."""
+    recorder: Recorder
+    worker: Callable[[DeliberationParts], Worker] = InlineWorker
+    """Makes who works deliberations out."""
+    begin_task: Callable[[], None] = _nothing
+    """Called when the survey is over: a simulator brings a fresh battery."""
+    judge: Judge | None = None
+    """In a simulator, says how it really went."""
+    improve: Improve | None = None
+    """Makes better words while the first ones are shown; None: nobody does."""
+    remarks: Callable[[], Sequence[str]] = tuple
+    """What went wrong with the words since it was last called, in sentences."""
+    surveys: bool = False
+    """True where the first map is made by a survey flight."""
+    simulated: bool = False
+    """True in a simulator only: baselines may then fly what is not known to be passable."""
+    watch_map: bool = True
+    """False where the map is given and nothing new can be seen."""
+    camera_period_s: float = 0.5
+    """Between pictures in flight, seconds."""
+    digests: bool = False
+    """Whether each step's directives are kept as a digest, for a later replay."""
+    strategy_name: str = "mint"
+    planner_name: str = "grid"
+    language: str = "en"
+    language_model: str = "template"
+    seed: int | None = None
+
+    @property
+    def setup(self) -> Setup:
+        """What stays the same for the whole mission."""
+        return Setup(mission=self.parts.mission, surveys=self.surveys, simulated=self.simulated)
+
+    def started(self) -> MissionStarted:
+        """The first event of the record."""
+        return MissionStarted(
+            mission=self.parts.mission,
+            task=self.parts.task,
+            seed=self.seed,
+            strategy=self.strategy_name,
+            language=self.language,
+            language_model=self.language_model,
+            groups=self.parts.groups,
+            planner=self.planner_name,
+            simulated=self.simulated,
+            surveys=self.surveys,
+        )

@@ -1,0 +1,220 @@
+"""Deliberation: find the gaps, plan, build the tree, choose the query (method, sections 2 to 5). Pure, and slow."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Protocol
+
+from mintpilot.core.decisions import AskQuestion, FlyPlan, NoPlan, Reasoning
+from mintpilot.core.errors import InfeasibleError
+from mintpilot.core.gap import Belief, CorrelationGroup, KnowledgeGap
+from mintpilot.core.geometry import Vec3
+from mintpilot.core.mission import AskingSettings, Mission
+from mintpilot.core.ports import (
+    Decision,
+    Fly,
+    ImpactMetric,
+    Planner,
+    Proposer,
+    QueryObjective,
+    Situation,
+    Strategy,
+)
+from mintpilot.core.query import Query, Question
+from mintpilot.core.semantic_map import Knowledge, SemanticMap
+from mintpilot.core.task import Task
+from mintpilot.core.tree import Mint
+from mintpilot.elicitation.wording import word_question
+from mintpilot.mapping.knowledge import apply_knowledge
+from mintpilot.mission.belief_state import BeliefState, remaining_budget
+from mintpilot.mission.explanations import explanations
+from mintpilot.reasoning.belief import extend
+from mintpilot.uncertainty.findings import Findings, find_gaps, frame_problem
+
+LEAST_ENDURANCE_S = 1e-3
+"""A plan is framed with at least this flight time, seconds: an empty battery is no plan, not an error."""
+
+
+class Wording(Protocol):
+    """Puts a query into words. Words never decide meaning: the query goes with them."""
+
+    def __call__(self, query: Query, gaps: Sequence[KnowledgeGap], mint: Mint | None, *, attempt: int = 1) -> Question:
+        """The question for a query; from the second attempt on in other words."""
+        ...
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DeliberationParts:
+    """The parts that deliberation is done with; the same for a whole mission."""
+
+    mission: Mission
+    task: Task
+    planner: Planner
+    strategy: Strategy
+    metric: ImpactMetric
+    objective: QueryObjective
+    groups: tuple[CorrelationGroup, ...] = ()
+    proposer: Proposer | None = None
+    """Whom the strategy may ask for queries besides its own; None: nobody."""
+    word: Wording = word_question
+    """Words a query at once, by template."""
+
+    @property
+    def settings(self) -> AskingSettings:
+        """Thresholds and bounds of asking."""
+        return self.mission.asking
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Deliberation:
+    """What was looked at, and what it came to."""
+
+    state: BeliefState
+    findings: Findings
+    situation: Situation
+    decision: Decision
+
+    @property
+    def left_out(self) -> tuple[str, ...]:
+        """What bounds on the work left out, in plain sentences: plans stay safe, but may not be the best."""
+        mint = self.decision.mint
+        notes = self.situation.space.notes
+        if isinstance(self.decision, Fly):
+            notes = (*notes, *(notice.rstrip(".") for notice in self.decision.notices))
+        if mint is None or not mint.not_expanded:
+            return notes
+        return (*notes, f"{mint.not_expanded} leaves of the tree were not expanded; they get the cautious plan")
+
+
+def deliberate(state: BeliefState, parts: DeliberationParts, *, start_m: Vec3, endurance_s: float) -> Deliberation:
+    """Finds the gaps, plans, and decides whether to ask or to fly (method, sections 2 to 5).
+
+    Wishes (avoidances that are not strict) are given up where the task cannot be done otherwise.
+
+    Args:
+        state: what is known so far.
+        parts: what deliberation is done with.
+        start_m: where the drone is, metres.
+        endurance_s: flight time that a plan may use, seconds.
+
+    Raises:
+        InfeasibleError: nothing can be flown, whatever the answers are.
+    """
+    try:
+        found = _deliberate(state, parts, start_m=start_m, endurance_s=endurance_s, honour_wishes=True)
+        hopeless = isinstance(found.decision, Fly) and found.decision.plan is None
+    except InfeasibleError:
+        if not _wishes(state, parts, start_m):
+            raise
+        hopeless = True
+    if hopeless and _wishes(state, parts, start_m):
+        return _deliberate(state, parts, start_m=start_m, endurance_s=endurance_s, honour_wishes=False)
+    return found
+
+
+def decision_of(found: Deliberation, parts: DeliberationParts, explained: frozenset[str]) -> AskQuestion | FlyPlan:
+    """What a deliberation came to, as a value that can be sent and kept.
+
+    Args:
+        found: the deliberation.
+        parts: words the query.
+        explained: ids of gaps that an earlier deliberation has explained.
+    """
+    choice, situation = found.decision, found.situation
+    fresh = any(gap.id not in explained for gap in found.findings.gaps)
+    reasoning = Reasoning(
+        gaps=found.findings.gaps,
+        belief=situation.belief,
+        regions=tuple((r.id, r.passable) for r in found.state.map.regions if r.passable is not Knowledge.OPEN),
+        rooms=tuple((r.id, r.occupied) for r in found.state.map.rooms if r.occupied is not Knowledge.OPEN),
+        mint=choice.mint,
+        cautious=choice.mint.root.cautious if choice.mint is not None else None,
+        explanations=explanations(found.situation, choice.mint) if fresh else (),
+        proposed=choice.proposed,
+        left_out=found.left_out,
+    )
+    if isinstance(choice, Fly):
+        return FlyPlan(reasoning=reasoning, plan=choice.plan, certificate=choice.certificate, unsafe=choice.unsafe)
+    query = choice.scored.query
+    spoken_of = tuple(g for g in situation.belief.gaps if g.id in query.gap_ids)
+    attempt = found.state.attempts.count(query.id) + 1
+    return AskQuestion(
+        reasoning=reasoning,
+        question=parts.word(query, spoken_of, choice.mint, attempt=attempt),
+        scored=choice.scored,
+        alternatives=choice.alternatives,
+        bound_bits=choice.bound_bits,
+    )
+
+
+def settle(map: SemanticMap, reasoning: Reasoning) -> SemanticMap:
+    """The map with what a deliberation has taken as known of regions and rooms (expert knowledge, method section 6)."""
+    passable = {region.id: region.passable for region in map.regions}
+    occupied = {room.id: room.occupied for room in map.rooms}
+    for region, known in reasoning.regions:
+        if passable.get(region) is Knowledge.OPEN:
+            map = map.with_region(region, known)
+    for room, known in reasoning.rooms:
+        if occupied.get(room) is Knowledge.OPEN:
+            map = map.with_room(room, occupied=known)
+    return map
+
+
+def mission_decision(
+    state: BeliefState, parts: DeliberationParts, *, start_m: Vec3, endurance_s: float, explained: frozenset[str]
+) -> AskQuestion | FlyPlan | NoPlan:
+    """Deliberates and gives the decision; `NoPlan` where nothing can be flown whatever the answers are."""
+    try:
+        found = deliberate(state, parts, start_m=start_m, endurance_s=endurance_s)
+    except InfeasibleError as error:
+        return NoPlan(reason=str(error))
+    return decision_of(found, parts, explained)
+
+
+def _deliberate(
+    state: BeliefState, parts: DeliberationParts, *, start_m: Vec3, endurance_s: float, honour_wishes: bool
+) -> Deliberation:
+    findings, belief = _gaps_of(state, parts, start_m, honour_wishes)
+    known = apply_knowledge(state.map, belief, state.confirmed, parts.settings)
+    if known is not state.map:
+        state = replace(state, map=known, belief=belief)
+        findings, belief = _gaps_of(state, parts, start_m, honour_wishes)
+    if findings.problems:
+        raise InfeasibleError(" ".join(findings.problems))
+    state = replace(state, belief=belief)
+    limits = replace(parts.mission.limits, endurance_s=max(endurance_s, LEAST_ENDURANCE_S))
+    problem = frame_problem(state.map, parts.task, findings, start_m=start_m, limits=limits, finished=state.finished)
+    situation = Situation(
+        problem=problem,
+        space=parts.planner.open(problem),
+        belief=belief,
+        confirmed=state.confirmed,
+        withdrawn=state.withdrawn,
+        asked=state.asked,
+        silent=state.silent,
+        settings=remaining_budget(parts.settings, state),
+        metric=parts.metric,
+        objective=parts.objective,
+        proposer=parts.proposer,
+    )
+    return Deliberation(state=state, findings=findings, situation=situation, decision=parts.strategy.decide(situation))
+
+
+def _gaps_of(
+    state: BeliefState, parts: DeliberationParts, start_m: Vec3, honour_wishes: bool
+) -> tuple[Findings, Belief]:
+    findings = find_gaps(
+        state.map,
+        parts.task,
+        start_m=start_m,
+        prior_passable=parts.mission.prior_passable,
+        finished=state.finished,
+        honour_wishes=honour_wishes,
+    )
+    return findings, extend(state.belief, findings.gaps, parts.groups, max_joint=parts.settings.max_joint)
+
+
+def _wishes(state: BeliefState, parts: DeliberationParts, start_m: Vec3) -> bool:
+    """Whether something is stayed out of only because the person wished so."""
+    return bool(_gaps_of(state, parts, start_m, honour_wishes=True)[0].wishes)

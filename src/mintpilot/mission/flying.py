@@ -1,0 +1,167 @@
+"""Flying a plan, leg by leg, each checked against the newest map right before it is flown; and the ways back."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from mintpilot.core.decisions import FlyPlan, FlyTrajectory, GoBack, RefuseFlight
+from mintpilot.core.inputs import Link, MapObserved
+from mintpilot.core.mission import Outcome
+from mintpilot.core.plan import Leg, Plan
+from mintpilot.core.task import Action
+from mintpilot.mission.requests import Purpose
+from mintpilot.mission.state import Activity, Ending, Goal, uncertain_things
+from mintpilot.mission.transition import Transition
+
+MAX_REPLANS = 8
+"""How often news in flight may send the drone back to deliberating before it goes home."""
+MAX_HOPS = 6
+"""Flights towards the start or a landing place, when news keep stopping the drone on its way."""
+
+
+def fly_plan(t: Transition, plan: Plan, *, unsafe: bool = False) -> None:
+    """Sets out on a plan. What an unsafe baseline takes for granted counts in a simulator only."""
+    entered = {gap.partition(":")[2] for gap in plan.enters} if unsafe and t.state.setup.simulated else ()
+    t.set(plan=plan, leg=0, assume_passable=frozenset(entered))
+    next_leg(t)
+
+
+def next_leg(t: Transition) -> None:
+    """Has the trajectory of the next leg made and checked; after the last one the task is done."""
+    plan = t.state.plan
+    if plan is not None and t.state.leg < len(plan.legs):
+        t.request(Purpose.LEG, plan.legs[t.state.leg])
+        return
+    done = Ending(outcome=Outcome.SUCCESS, reason="Every stop was reached.")
+    if t.state.is_down(Link.OPERATOR):
+        t.set(ending=done)
+        t.redirect(Goal.RETURN)
+        return
+    t.finish(done.outcome, done.reason)
+
+
+def chosen(t: Transition, decision: FlyPlan) -> None:
+    """The asking is over: flies the plan, or goes home where there is none that may be flown."""
+    if decision.plan is None:
+        t.give_up(decision.certificate.text)
+    else:
+        fly_plan(t, decision.plan, unsafe=decision.unsafe)
+
+
+def fly_leg(t: Transition, decision: FlyTrajectory) -> None:
+    """Flies a leg, or back out of a place that is not known free."""
+    if decision.retreat:
+        t.note("retreat", "The drone went back the way it came.")
+        t.set(retreats=t.state.retreats + 1)
+        t.follow(decision.trajectory, Activity.RETREAT)
+        return
+    plan = t.state.plan
+    assert plan is not None
+    rest = np.vstack([leg.path_m for leg in plan.legs[t.state.leg :]])
+    t.follow(decision.trajectory, Activity.LEG, rest, unsafe=True)
+
+
+def refused(t: Transition, decision: RefuseFlight) -> None:
+    """No checked trajectory: after the first leg the map has changed since the plan was made, so plan again."""
+    if t.state.leg == 0:
+        t.give_up(decision.reason)
+        return
+    t.note("news", decision.reason)
+    plan_again(t)
+
+
+def plan_again(t: Transition) -> None:
+    """Deliberates anew from here, as often as news may ask for it."""
+    t.set(replans=t.state.replans + 1, plan=None)
+    if t.state.replans >= MAX_REPLANS:
+        t.give_up("New things kept turning up in the way.")
+        return
+    t.request(Purpose.MISSION)
+
+
+def arrived(t: Transition) -> None:
+    """At the stop: does what it is for."""
+    t.act(_leg(t))
+
+
+def fulfilled(t: Transition) -> None:
+    """The stop is done and looked around from: on to the next one."""
+    leg, beliefs = _leg(t), t.beliefs
+    if leg.stop.action is Action.LOOK:
+        beliefs = replace(beliefs, map=beliefs.map.with_room(leg.site.label, searched=True))
+    t.set(beliefs=replace(beliefs, finished=beliefs.finished | {leg.stop.id}), leg=t.state.leg + 1)
+    next_leg(t)
+
+
+def watch(t: Transition, event: MapObserved) -> None:
+    """Looks at what a new map says of the flight: brakes where the way ahead is lost or something new is uncertain."""
+    motion = t.state.motion
+    if motion is None or not motion.monitored or motion.braking:
+        return
+    things = uncertain_things(event.map)
+    new = [words for name, words in things.items() if name not in motion.known]
+    if event.obstruction:
+        news = f"the way ahead is not known to be free any more: {event.obstruction}"
+    elif new and t.state.activity is Activity.LEG:
+        news = f"something new and uncertain: {new[0]}"
+    else:
+        return
+    if t.state.activity is Activity.LEG:
+        t.note("news", news)
+    t.brake()
+
+
+def go_back(t: Transition, decision: GoBack) -> None:
+    """Flies home, or to the place to land at; or does there what was to be done."""
+    if t.state.goal is Goal.HOLD:
+        t.set(home_s=decision.duration_s)
+        return
+    if decision.trajectory is None:
+        there(t)
+        return
+    if t.state.goal is Goal.LAND and t.state.land_here:
+        t.set(land_here=False)
+        t.redirect(Goal.RETURN)
+        proceed_back(t)
+        return
+    t.set(hops=t.state.hops + 1)
+    if t.state.hops > MAX_HOPS:
+        t.end("It holds where it is.")
+        return
+    activity = Activity.TO_LANDING if t.state.goal is Goal.LAND else Activity.HOMEWARD
+    t.follow(decision.trajectory, activity, decision.trajectory.position_m[::10])
+
+
+def no_way_back(t: Transition, decision: RefuseFlight) -> None:
+    """Neither home nor to a place to land at leads a way that is known to be free."""
+    if t.state.goal is Goal.HOLD:
+        t.set(home_s=0.0)
+        return
+    if t.state.goal is Goal.LAND and t.state.land_here:
+        t.set(land_here=False)
+        t.redirect(Goal.RETURN)
+        proceed_back(t)
+        return
+    t.note("no-way-back", decision.reason)
+    t.end("It holds where it is.")
+
+
+def proceed_back(t: Transition) -> None:
+    """At rest, on the way home or to a landing place: has the next flight worked out."""
+    t.request(Purpose.LAND if t.state.goal is Goal.LAND else Purpose.RETURN)
+
+
+def there(t: Transition) -> None:
+    """At the start, or above the place to land at."""
+    if t.state.goal is Goal.LAND or t.state.lands:
+        t.set(goal=Goal.LAND)
+        t.descend()
+    else:
+        t.end("It is back at the start.")
+
+
+def _leg(t: Transition) -> Leg:
+    assert t.state.plan is not None
+    return t.state.plan.legs[t.state.leg]

@@ -1,0 +1,148 @@
+"""Orders and links: what the drone does when somebody says so, and when nobody can be heard or nothing be seen."""
+
+from __future__ import annotations
+
+from mintpilot.core.inputs import Link, LinkChanged, Ordered
+from mintpilot.core.mission import Outcome
+from mintpilot.core.query import Order
+from mintpilot.mission.requests import Purpose
+from mintpilot.mission.state import Activity, Ending, Goal
+from mintpilot.mission.transition import Transition
+
+RESERVE_S = 10.0
+"""While it holds, the drone returns when no more flight time is left than the way back and this, seconds."""
+LONGEST_HOLD_S = 1800.0
+"""It holds no longer than this, whatever the battery says, seconds."""
+BLIND_S = 5.0
+"""Without a camera it returns after this time, without a position it lands, seconds."""
+SEEN_FREE_S = 60.0
+"""Space that was seen free counts as free for so long once the camera is gone, seconds."""
+
+AWAITING_MAP = (Activity.FIRST_LOOK, Activity.SWEPT, Activity.ACTED)
+"""What waits for a new map, which does not come without a camera."""
+
+_ANSWERS = {
+    Order.HOLD: "I brake and hold here. Say 'continue' to go on.",
+    Order.CONTINUE: "I go on: I think again from here.",
+    Order.RETURN: "I fly back to the start by the way that is known to be free.",
+    Order.LAND: "I land here, or at the nearest place where the ground is known to be free.",
+    Order.ABORT: "I brake and ask nothing more. I land here if the ground is free, else I fly back and land.",
+}
+
+
+def ordered(t: Transition, event: Ordered) -> None:
+    """Obeys: the order decides the next motion."""
+    match event.order:
+        case Order.CONTINUE:
+            _continue(t)
+        case Order.HOLD:
+            t.tell(_ANSWERS[Order.HOLD])
+            _hold(t, None)
+        case Order.RETURN:
+            t.tell(_ANSWERS[Order.RETURN])
+            _leave(t, Goal.RETURN, "The operator called the drone back.")
+        case Order.LAND:
+            t.tell(_ANSWERS[Order.LAND])
+            _leave(t, Goal.LAND, "The operator ordered the drone to land.")
+        case Order.ABORT:
+            t.tell(_ANSWERS[Order.ABORT])
+            _leave(t, Goal.LAND, "The operator broke the mission off.")
+            t.set(land_here=True, lands=True)
+
+
+def link_changed(t: Transition, event: LinkChanged) -> None:
+    """Does what is safe without the link, and goes on when it is back."""
+    link, was_down = event.link, t.state.is_down(event.link)
+    if event.up == (not was_down):
+        return
+    others = tuple(item for item in t.state.links_down if item[0] is not link)
+    t.set(links_down=others if event.up else (*others, (link, t.state.clock_s)))
+    reason = f" ({event.reason})" if event.reason else ""
+    t.note("link", f"The link '{link.value}' {'is back' if event.up else 'is lost'}{reason}.")
+    if event.up:
+        if t.state.held_for is link and t.state.goal is Goal.HOLD:
+            _resume(t)
+        return
+    match link:
+        case Link.TELEMETRY:
+            t.finish(Outcome.VEHICLE_FAILED, event.reason or "The link to the vehicle is lost: it is in its fail-safe.")
+        case Link.CAMERA if t.state.activity in AWAITING_MAP and t.state.motion is None:
+            t.set(activity=Activity.NONE)
+            _blind(t, link)
+        case Link.CAMERA | Link.POSITION if t.state.goal in (Goal.SURVEY, Goal.TASK) or link is Link.POSITION:
+            _blind(t, link)
+        case Link.MODEL:
+            t.tell("The language model is gone: I go on with words of my own.")
+        case _:
+            pass
+
+
+def pass_time(t: Transition) -> None:
+    """What passing time alone decides: holding ends before the battery does, and blindness ends in the safe state."""
+    state = t.state
+    blind_s = max((state.clock_s - since for link, since in state.links_down if link is Link.CAMERA), default=0.0)
+    if state.goal is Goal.RETURN and blind_s > SEEN_FREE_S:
+        t.redirect(Goal.LAND)
+        return
+    if state.goal is not Goal.HOLD or state.held_since_s is None:
+        return
+    held_s = state.clock_s - state.held_since_s
+    if state.held_for is Link.CAMERA and held_s >= BLIND_S:
+        _end_hold(t, Goal.RETURN, Outcome.NO_SAFE_PLAN, "The camera is gone.")
+    elif state.held_for is Link.POSITION and held_s >= BLIND_S:
+        _end_hold(t, Goal.LAND, Outcome.NO_SAFE_PLAN, "The position is not known.")
+    elif held_s >= LONGEST_HOLD_S:
+        _end_hold(t, Goal.RETURN, Outcome.ABORTED, f"It held for {held_s:.0f} s and nobody said 'continue'.")
+    elif state.endurance_s() <= (state.home_s or 0.0) + RESERVE_S:
+        _end_hold(t, Goal.RETURN, Outcome.ABORTED, "It held until the battery was needed for the way back.")
+
+
+def begin_hold(t: Transition) -> None:
+    """At rest, holding: has the way back worked out, to know until when the battery lasts."""
+    if t.state.home_s is None and t.state.request is None and t.state.beliefs is not None:
+        t.request(Purpose.RETURN)
+
+
+def _blind(t: Transition, link: Link) -> None:
+    what = "I see nothing" if link is Link.CAMERA else "I do not know where I am"
+    t.tell(f"{what}: I brake and hold.")
+    _hold(t, link)
+
+
+def _hold(t: Transition, link: Link | None) -> None:
+    if t.state.goal in (Goal.SURVEY, Goal.TASK):
+        t.set(resume=t.state.goal)
+    t.redirect(Goal.HOLD)
+    t.set(held_since_s=t.state.clock_s, held_for=link, home_s=None)
+
+
+def _leave(t: Transition, goal: Goal, reason: str) -> None:
+    if t.state.goal in (Goal.SURVEY, Goal.TASK):
+        t.set(resume=t.state.goal)
+    t.set(ending=Ending(outcome=Outcome.ABORTED, reason=reason), lands=False, land_here=False)
+    t.redirect(goal)
+
+
+def _continue(t: Transition) -> None:
+    if t.state.goal in (Goal.SURVEY, Goal.TASK):
+        t.tell("I am going on already.")
+        return
+    blind = [link for link in (Link.CAMERA, Link.POSITION) if t.state.is_down(link)]
+    ending = t.state.ending
+    if blind or (ending is not None and ending.outcome is not Outcome.ABORTED and t.state.goal is not Goal.HOLD):
+        why = f"the link '{blind[0].value}' is lost." if blind or ending is None else ending.reason
+        t.tell(f"I cannot go on: {why}")
+        return
+    t.tell(_ANSWERS[Order.CONTINUE])
+    _resume(t)
+
+
+def _resume(t: Transition) -> None:
+    t.set(held_since_s=None, held_for=None, ending=None, lands=False, land_here=False)
+    t.redirect(t.state.resume)
+
+
+def _end_hold(t: Transition, goal: Goal, outcome: Outcome, reason: str) -> None:
+    t.set(ending=Ending(outcome=outcome, reason=reason), held_since_s=None, held_for=None)
+    t.tell(f"{reason} I {'return' if goal is Goal.RETURN else 'land'}.")
+    t.redirect(goal)

@@ -1,0 +1,237 @@
+"""One step of a mission: a pure function of state and event (method, section 8)."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from mintpilot.core.decisions import AskQuestion, Explore, FlyPlan, FlyTrajectory, GoBack, NoPlan, RefuseFlight
+from mintpilot.core.inputs import (
+    Answered,
+    DeliberationEnded,
+    Input,
+    LinkChanged,
+    MapObserved,
+    MissionBegun,
+    MotionEnded,
+    Ordered,
+    QuestionReworded,
+    QuestionShown,
+    Ticked,
+)
+from mintpilot.core.mission import Outcome
+from mintpilot.core.motion import MotionEnd
+from mintpilot.core.trajectory import VehicleState
+from mintpilot.mission import asking, flying, ordering, surveying
+from mintpilot.mission.belief_state import BeliefState
+from mintpilot.mission.directives import Directive
+from mintpilot.mission.requests import Purpose
+from mintpilot.mission.state import Activity, Goal, MissionState, PendingRequest, Setup, uncertain_things
+from mintpilot.mission.transition import Transition
+from mintpilot.reasoning.belief import prior_belief
+
+MAX_REFUSALS = 3
+"""A vehicle that refuses so many motions in one mission cannot go on."""
+MAX_DROPS = 2
+"""After so many decisions that came too late for what had changed meanwhile, the cautious plan is flown."""
+
+
+def initial_state(setup: Setup, vehicle: VehicleState) -> MissionState:
+    """The state before anything has happened."""
+    return MissionState(setup=setup, clock_s=vehicle.time_s, vehicle=vehicle, goal=Goal.SURVEY, resume=Goal.SURVEY)
+
+
+def step(state: MissionState, event: Input) -> tuple[MissionState, tuple[Directive, ...]]:
+    """The state after an event, and what is to be done now. Equal arguments give equal results; nothing is changed.
+
+    Args:
+        state: of the mission.
+        event: what has happened. Times before the state's clock count as now: the clock never goes back.
+    """
+    if state.ended:
+        return state, ()
+    t = Transition(replace(state, clock_s=max(state.clock_s, event.time_s)))
+    match event:
+        case MissionBegun():
+            t.set(vehicle=event.vehicle)
+            mission = t.state.setup.mission
+            t.take_off(mission.start_m[2] - mission.volume.lo_m[2])
+        case Ticked():
+            _tick(t, event)
+        case MapObserved():
+            _observed(t, event)
+        case MotionEnded():
+            _motion_ended(t, event)
+        case QuestionShown():
+            asking.shown(t, event)
+        case QuestionReworded():
+            asking.reworded(t, event)
+        case Answered():
+            asking.somebody_spoke(t)
+            asking.answered(t, event)
+        case Ordered():
+            asking.somebody_spoke(t)
+            ordering.ordered(t, event)
+        case LinkChanged():
+            ordering.link_changed(t, event)
+        case DeliberationEnded():
+            _deliberated(t, event)
+    _proceed(t)
+    return t.state, tuple(t.out)
+
+
+def _proceed(t: Transition) -> None:
+    """At rest, with nothing open: begins what the goal wants next. Whatever was broken off is taken up here."""
+    state = t.state
+    busy = state.motion is not None or state.request is not None or state.question is not None
+    if state.ended or busy or state.activity is not Activity.NONE:
+        return
+    if state.beliefs is None:
+        _proceed_without_map(t)
+        return
+    match state.goal:
+        case Goal.SURVEY:
+            surveying.next_place(t) if state.survey is not None else surveying.begin_survey(t)
+        case Goal.TASK if state.task_begun_s is not None and state.ready:
+            t.request(Purpose.MISSION)
+        case Goal.HOLD:
+            ordering.begin_hold(t)
+        case Goal.RETURN | Goal.LAND:
+            flying.proceed_back(t)
+        case _:
+            pass
+
+
+def _proceed_without_map(t: Transition) -> None:
+    match t.state.goal:
+        case Goal.SURVEY | Goal.TASK:
+            t.observe(Activity.FIRST_LOOK)
+        case Goal.RETURN:
+            t.end("It holds where it is.")
+        case Goal.LAND:
+            t.descend()
+        case _:
+            pass
+
+
+def _tick(t: Transition, event: Ticked) -> None:
+    if event.vehicle is not None:
+        t.set(vehicle=event.vehicle, ready=t.state.task_begun_s is not None)
+    question, request = t.state.question, t.state.request
+    if question is not None and t.state.clock_s >= question.deadline_s:
+        asking.unanswered(t)
+    if request is not None and t.state.clock_s >= request.deadline_s:
+        _without_decision(t, request, "the deliberation is overdue")
+    ordering.pass_time(t)
+
+
+def _observed(t: Transition, event: MapObserved) -> None:
+    beliefs = t.state.beliefs
+    if beliefs is None:
+        t.set(beliefs=BeliefState(map=event.map, belief=prior_belief(())))
+    else:
+        t.set(beliefs=replace(beliefs, map=event.map))
+    match t.state.activity:
+        case Activity.FIRST_LOOK:
+            t.set(activity=Activity.NONE)
+        case Activity.SWEPT:
+            t.set(activity=Activity.NONE)
+            if t.state.goal is Goal.SURVEY:
+                surveying.swept(t)
+        case Activity.ACTED:
+            t.set(activity=Activity.NONE)
+            if t.state.goal is Goal.TASK:
+                flying.fulfilled(t)
+        case _:
+            flying.watch(t, event)
+
+
+def _motion_ended(t: Transition, event: MotionEnded) -> None:
+    t.set(vehicle=event.vehicle)
+    motion, activity = t.state.motion, t.state.activity
+    if motion is None or event.motion != motion.id:
+        return
+    t.set(motion=None, activity=Activity.NONE)
+    if event.log is not None and len(event.log.position_m):
+        t.set(track=(*t.state.track, event.log.position_m[::10]))
+    if event.end is MotionEnd.REFUSED:
+        t.set(refusals=t.state.refusals + 1)
+    if event.end is MotionEnd.FAILED or t.state.refusals >= MAX_REFUSALS:
+        t.finish(Outcome.VEHICLE_FAILED, event.reason or "The vehicle could not go on.")
+        return
+    stopped = event.end is not MotionEnd.ARRIVED
+    match activity:
+        case Activity.SWEEP if t.state.goal is Goal.SURVEY and not stopped:
+            t.observe(Activity.SWEPT, look=False)
+        case Activity.EXPLORE if t.state.goal is Goal.SURVEY:
+            surveying.sweep(t)
+        case Activity.SURVEY_BACK if t.state.goal is Goal.SURVEY:
+            surveying.came_back(t)
+        case Activity.LEG if t.state.goal is Goal.TASK:
+            flying.plan_again(t) if stopped else flying.arrived(t)
+        case Activity.ACT if t.state.goal is Goal.TASK:
+            flying.plan_again(t) if stopped else t.observe(Activity.ACTED)
+        case Activity.HOMEWARD | Activity.TO_LANDING if t.state.goal in (Goal.RETURN, Goal.LAND) and not stopped:
+            flying.proceed_back(t)
+        case Activity.DESCENT if t.state.goal is Goal.LAND and not stopped:
+            t.end("It stands on the ground.")
+        case _:
+            pass  # broken off: the goal says what is next
+
+
+def _deliberated(t: Transition, event: DeliberationEnded) -> None:
+    request = t.state.request
+    if request is None or event.request != request.id:
+        return
+    t.set(request=None)
+    decision = event.decision
+    if decision is None:
+        _without_decision(t, request, event.reason)
+        return
+    if request.purpose is Purpose.MISSION and not isinstance(decision, FlyTrajectory) and _is_outdated(t, request):
+        t.set(drops=t.state.drops + 1)
+        if t.state.drops >= MAX_DROPS:
+            _without_decision(t, request, "new things kept being seen meanwhile")
+        return
+    t.set(drops=0)
+    match decision:
+        case AskQuestion():
+            asking.take_over(t, decision.reasoning)
+            asking.put(t, decision)
+        case FlyPlan():
+            asking.take_over(t, decision.reasoning)
+            flying.chosen(t, decision)
+        case NoPlan():
+            t.give_up(decision.reason)
+        case FlyTrajectory():
+            if t.state.goal is Goal.HOLD:
+                t.set(home_s=0.0)  # it is asked how far home is, not to go there
+            else:
+                flying.fly_leg(t, decision)
+        case Explore():
+            surveying.go_on(t, decision)
+        case GoBack():
+            flying.go_back(t, decision)
+        case RefuseFlight():
+            flying.refused(t, decision) if request.purpose is Purpose.LEG else flying.no_way_back(t, decision)
+
+
+def _is_outdated(t: Transition, request: PendingRequest) -> bool:
+    """Whether things that it could not know of are uncertain now."""
+    return not set(uncertain_things(t.beliefs.map)) <= request.known
+
+
+def _without_decision(t: Transition, request: PendingRequest, reason: str) -> None:
+    """The cautious plan that was checked last; where there is none, back to the start."""
+    t.set(request=None, drops=0)
+    t.note("deliberation", f"No decision ({reason}).")
+    fallback = t.state.fallback
+    match request.purpose:
+        case Purpose.MISSION if fallback is not None:
+            t.set(fallback=None)
+            flying.fly_plan(t, fallback)
+        case Purpose.MISSION | Purpose.LEG:
+            t.give_up(f"No plan could be worked out: {reason}.")
+        case Purpose.SURVEY:
+            surveying.begin_task(t)
+        case Purpose.RETURN | Purpose.LAND:
+            flying.no_way_back(t, RefuseFlight(reason=reason))
