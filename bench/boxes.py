@@ -44,8 +44,8 @@ def section(measured: Measured, command: str) -> Section:
     notes = [
         f"`mint`: {sum(t.success for t in mint)} of {len(mint)} succeed; at most {worst:.2f} s from instruction to "
         "trajectories without thinking time.",
-        "The passive baseline takes the first of the equally likely boxes, `pure-llm` draws one: both find the right "
-        "one with one over the number of boxes. The paper's 35 % would be about three boxes in each arrangement.",
+        "The passive baseline takes the first of the equally likely boxes, `passive-mixture` draws one: both find the "
+        "right one with one over the number of boxes. The paper's 35 % would be about three boxes in each arrangement.",
         *failures(measured, "mint"),
     ]
     notes += [measured.throughput] if measured.throughput else []

@@ -12,17 +12,18 @@ import numpy as np
 
 from mintpilot.assembly.registry import load
 from mintpilot.core.errors import InfeasibleError
-from mintpilot.core.gap import BLOCKED, PASSABLE, Assumptions, GapKind, KnowledgeGap
+from mintpilot.core.gap import BLOCKED, PASSABLE, Assumptions, GapKind, KnowledgeGap, obstacle_id
 from mintpilot.core.geometry import GridFrame
 from mintpilot.core.mission import AskingSettings
 from mintpilot.core.observation import RegionKind
 from mintpilot.core.plan import PlanningProblem, Site, Stop, VehicleLimits
 from mintpilot.core.ports import Ask, Fly, PlanSpace, Situation, Strategy
-from mintpilot.core.query import Combine, Query, Reply
+from mintpilot.core.query import Query, answer_for
 from mintpilot.core.semantic_map import Cell, Region, SemanticMap
 from mintpilot.core.task import Action
+from mintpilot.mission.belief_state import BeliefState, update
 from mintpilot.planning.task_planner import GridPlanner
-from mintpilot.reasoning.belief import condition, prior_belief
+from mintpilot.reasoning.belief import prior_belief
 
 SHAPE = (24, 40)
 LIMITS = VehicleLimits(radius_m=0.01, margin_m=0.0, cruise_mps=1.0)
@@ -75,16 +76,18 @@ def expectation(strategy: Strategy, situation: Situation) -> Expectation:
     return _follow(strategy, situation, truths)
 
 
-def answered(situation: Situation, query: Query, yes: bool) -> Situation:
-    """The situation after an answer, as the loop makes it."""
-    update = condition(situation.belief, query, Reply.YES if yes else Reply.NO, situation.settings.answer_error)
-    outright = len(query.literals) == 1 or query.combine is Combine.ALL
-    named = {x.gap for x in query.literals if x.values == frozenset({PASSABLE})} if yes and outright else set()
+def answered(situation: Situation, query: Query, part: int) -> Situation:
+    """The situation after an answer that names that part of the query, by the update that missions use."""
+    before = BeliefState(
+        map=situation.problem.map,
+        belief=situation.belief,
+        confirmed=situation.confirmed,
+        withdrawn=situation.withdrawn,
+        asked=situation.asked,
+    )
+    after = update(before, query, answer_for(query, part), situation.settings).state
     return replace(
-        situation,
-        belief=update.belief,
-        confirmed=situation.confirmed | named,
-        asked=(*situation.asked, (query, yes)),
+        situation, belief=after.belief, confirmed=after.confirmed, withdrawn=after.withdrawn, asked=after.asked
     )
 
 
@@ -96,12 +99,12 @@ def _follow(strategy: Strategy, situation: Situation, truths: Sequence[tuple[Map
     assert isinstance(decision, Ask)
     query = decision.scored.query
     total = Expectation(questions=sum(p for _, p in truths), worse=0.0)
-    for yes in (True, False):
-        left = [(truth, p) for truth, p in truths if query.holds(truth) is yes]
+    for part in range(query.part_count):
+        left = [(truth, p) for truth, p in truths if query.part_of(truth) == part]
         if left:
             # Some ways of asking remember what they found: each branch goes on with its own memory.
-            part = _follow(copy.deepcopy(strategy), answered(situation, query, yes), left)
-            total = Expectation(questions=total.questions + part.questions, worse=total.worse + part.worse)
+            below = _follow(copy.deepcopy(strategy), answered(situation, query, part), left)
+            total = Expectation(questions=total.questions + below.questions, worse=total.worse + below.worse)
     return total
 
 
@@ -127,7 +130,7 @@ def _draw(rng: np.random.Generator, count: int) -> PlanningProblem:
         regions.append(Region(id=f"r{i}", kind=RegionKind.SMOKE, cells=np.flatnonzero(inside).astype(np.int64)))
         gaps.append(
             KnowledgeGap(
-                id=f"obstacle:r{i}",
+                id=obstacle_id(f"r{i}"),
                 kind=GapKind.OBSTACLE,
                 subject=f"r{i}",
                 description=f"the grey smoke number {i + 1}",

@@ -11,12 +11,13 @@ import numpy as np
 
 from bench.question_games import answered
 from mintpilot.assembly.registry import load
-from mintpilot.core.gap import Assumptions, Candidate, GapKind, KnowledgeGap
+from mintpilot.core.gap import Assumptions, Candidate, GapKind, KnowledgeGap, target_id
 from mintpilot.core.geometry import GridFrame
 from mintpilot.core.mission import AskingSettings
 from mintpilot.core.observation import Attribute
 from mintpilot.core.plan import Leg, Plan, PlanningProblem, Site, Stop, VehicleLimits
 from mintpilot.core.ports import Ask, Situation
+from mintpilot.core.query import NO_PART, YES_PART
 from mintpilot.core.semantic_map import SemanticMap
 from mintpilot.core.task import Action
 from mintpilot.reasoning.belief import prior_belief
@@ -86,7 +87,7 @@ def person_gap(persons: list[dict[str, Any]]) -> KnowledgeGap:
             )
         )
     return KnowledgeGap(
-        id="target:person",
+        id=target_id(1, "person"),
         kind=GapKind.TARGET,
         subject="person",
         description="the person",
@@ -127,8 +128,10 @@ def play(situation: Situation, meant: str, rng: np.random.Generator) -> tuple[in
     count = 0
     while isinstance(decision := strategy.decide(situation), Ask):
         query = decision.scored.query
-        yes = query.holds({gap.id: meant}) ^ bool(rng.random() < situation.settings.answer_error)
-        situation, count = answered(situation, query, yes), count + 1
+        part = query.part_of({gap.id: meant})
+        if rng.random() < situation.settings.answer_error:
+            part = NO_PART if part == YES_PART else YES_PART
+        situation, count = answered(situation, query, part), count + 1
     return count, dict(decision.plan.binds)[gap.id] if decision.plan else ""
 
 

@@ -9,17 +9,17 @@ import pytest
 from tests.benchmark.small import experiment
 
 from mintpilot.assembly.components import Choices, deliberation_parts
+from mintpilot.assembly.strategies import make_strategy
 from mintpilot.benchmark.calibration import FIRST_SEED, calibrate, committed, nonconformity, quantile
 from mintpilot.benchmark.conditions import asking_for, believed_world, misplaced, true_world
 from mintpilot.benchmark.experiment import Cell, Condition
 from mintpilot.benchmark.experiments import CONDITIONS, MOST_GAPS, gap_parameters, gaps
-from mintpilot.benchmark.methods import VARIANTS, make_strategy, method_of
+from mintpilot.benchmark.methods import VARIANTS, method_of
 from mintpilot.benchmark.omniscient import survey_world
 from mintpilot.benchmark.warm import WarmPlanner
 from mintpilot.core.gap import Assumptions
 from mintpilot.core.mission import CriticalityRule
 from mintpilot.mission.rehearsal import begin
-from mintpilot.strategies.passive import PureLlmStrategy
 
 WAREHOUSE = Cell(scenario="fire-warehouse", methods=())
 
@@ -68,8 +68,7 @@ def test_the_mixture_takes_both_stances_over_the_trials() -> None:
     parts = deliberation_parts(world, Choices())
     decisions = []
     for seed in range(12):
-        strategy = make_strategy(method_of("pure-llm"), seed)
-        assert isinstance(strategy, PureLlmStrategy)
+        strategy = make_strategy(method_of("passive-mixture").strategy, seed=seed)
         thought = begin(replace(parts, strategy=strategy), world.map).deliberated()
         plan = thought.decision.plan
         decisions.append(plan.signature if plan else "")

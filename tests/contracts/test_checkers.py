@@ -54,7 +54,7 @@ def test_a_metric(metric, said):
 
 class Constant(InformationGain):
     def scores(self, situation):
-        return np.ones(len(situation.yes))
+        return np.ones(len(situation.parts))
 
 
 class Short(InformationGain):

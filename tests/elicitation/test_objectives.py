@@ -28,7 +28,8 @@ def situation(seed: int, error: float = 0.0, n: int = 8, classes: int = 3, cuts:
         probability=rng.dirichlet(np.ones(n)),
         class_of=class_of,
         regret_s=np.where(class_of[None, :] == np.arange(classes)[:, None], 0.0, rng.uniform(1, 9, (classes, n))),
-        yes=rng.random((cuts, n)) < 0.5,
+        parts=(rng.random((cuts, n)) >= 0.5).astype(np.int8),
+        part_count=np.full(cuts, 2),
         settings=replace(EXACT, answer_error=error),
     )
 
@@ -41,7 +42,7 @@ def brute_entropy(p: list[float]) -> float:
 @given(st.integers(0, 2**32 - 1), st.sampled_from([0.0, 0.1, 0.4]))
 def test_information_gain_is_mutual_information(seed: int, error: float) -> None:
     s = situation(seed, error)
-    for cut, gain in zip(s.yes, InformationGain().scores(s), strict=True):
+    for cut, gain in zip(s.parts == 0, InformationGain().scores(s), strict=True):
         joint = np.zeros((2, 3))
         for p, c, y in zip(s.probability, s.class_of, cut, strict=True):
             joint[int(y), c] += p * (1 - error)
@@ -59,7 +60,7 @@ def test_ec2_counts_the_edges_that_are_cut(seed: int) -> None:
     n = len(s.probability)
     pairs = [(i, j) for i in range(n) for j in range(i) if s.class_of[i] != s.class_of[j]]
     weight = {(i, j): s.probability[i] * s.probability[j] for i, j in pairs}
-    for cut, score in zip(s.yes, Ec2().scores(s), strict=True):
+    for cut, score in zip(s.parts == 0, Ec2().scores(s), strict=True):
         yes = s.probability[cut].sum()
         expected = 0.0
         for answer, p in ((True, yes), (False, 1 - yes)):
@@ -71,7 +72,7 @@ def test_ec2_counts_the_edges_that_are_cut(seed: int) -> None:
 @pytest.mark.parametrize("error", [0.0, 0.1, 0.3])
 def test_a_cut_that_tells_nothing_is_worth_nothing(error: float) -> None:
     s = situation(1, error)
-    s = replace(s, yes=np.vstack([np.ones(8, bool), np.zeros(8, bool)]))
+    s = replace(s, parts=np.vstack([np.ones(8, np.int8), np.zeros(8, np.int8)]), part_count=np.array([2, 2]))
     for objective in (InformationGain(), Ec2(), ValueOfInformation(), Random()):
         assert (objective.scores(s) <= 1e-9).all()
 
@@ -81,7 +82,7 @@ def test_a_cut_that_tells_nothing_is_worth_nothing(error: float) -> None:
 def test_value_of_information_is_the_fall_of_expected_regret(seed: int, error: float) -> None:
     s = situation(seed, error)
     now = (s.regret_s @ s.probability).min()
-    for cut, value in zip(s.yes, ValueOfInformation().scores(s), strict=True):
+    for cut, value in zip(s.parts == 0, ValueOfInformation().scores(s), strict=True):
         heard = np.where(cut, 1 - error, error)
         after = sum((s.regret_s @ (s.probability * w)).min() for w in (heard, 1 - heard))
         assert value == pytest.approx(max(now - after, 0), abs=1e-8)
@@ -98,7 +99,7 @@ def fewest(s: QuerySituation, alive: frozenset[int]) -> float:
     if len({s.class_of[i] for i in alive}) == 1 or any(all(row[i] <= 0 for i in alive) for row in s.regret_s):
         return 0.0
     total, best = sum(s.probability[i] for i in alive), np.inf
-    for cut in s.yes:
+    for cut in s.parts == 0:
         parts = [frozenset(i for i in alive if cut[i]), frozenset(i for i in alive if not cut[i])]
         if all(parts):
             best = min(best, 1 + sum(sum(s.probability[i] for i in p) / total * fewest(s, p) for p in parts))
@@ -130,7 +131,8 @@ def detours(seed: int, gaps: int = 4, ways: int = 10, alpha: float = 0.0) -> Que
         probability=np.full(len(open_), 1 / len(open_)),
         class_of=class_of,
         regret_s=regret[used],
-        yes=np.array([*open_.T, *both]),
+        parts=(~np.array([*open_.T, *both])).astype(np.int8),
+        part_count=np.full(gaps + 2 * len(pairs), 2),
         settings=replace(EXACT, delta_c_s=1.0, alpha=alpha),
     )
 
@@ -144,7 +146,7 @@ def fewest_by_bits(s: QuerySituation) -> float:
 
     plans = [bits(row <= s.settings.delta_c_s) for row in s.regret_s]
     classes = [bits(s.class_of == c) for c in set(s.class_of)]
-    cuts = [bits(row) for row in s.yes]
+    cuts = [bits(row) for row in s.parts == 0]
     enough = 1 - s.settings.alpha
 
     @cache
@@ -184,9 +186,9 @@ def test_huffmans_code_is_the_shortest(seed: int) -> None:
         a, b, *rest = queue
         length += a + b
         queue = sorted([a + b, *rest])
-    assert huffman(rng.permutation(weights)[None, :])[0] == pytest.approx(length)
+    assert huffman(rng.permutation(weights)[None, :], 2)[0] == pytest.approx(length)
     # What is beyond a sum of one does not count.
-    assert huffman(np.array([[0.5, 0.25, 0.5, 0.25]]))[0] == pytest.approx(1.0)
+    assert huffman(np.array([[0.5, 0.25, 0.5, 0.25]]), 2)[0] == pytest.approx(1.0)
 
 
 def test_optimal_refuses_politely() -> None:
@@ -202,7 +204,8 @@ def test_an_exclusive_or_does_not_end_the_asking() -> None:
         probability=np.full(4, 0.25),
         class_of=np.array([0, 1, 1, 0]),
         regret_s=np.array([[0.0, 9.0, 9.0, 0.0], [9.0, 0.0, 0.0, 9.0]]),
-        yes=np.array([[True, True, False, False], [True, False, True, False]]),
+        parts=np.array([[0, 0, 1, 1], [0, 1, 0, 1]], np.int8),
+        part_count=np.array([2, 2]),
         settings=EXACT,
     )
     assert (InformationGain().scores(s) > 0).all()
@@ -211,7 +214,7 @@ def test_an_exclusive_or_does_not_end_the_asking() -> None:
 
 def test_random_is_seeded() -> None:
     s = situation(3)
-    one, other = (Random(np.random.default_rng(7)).scores(s) for _ in range(2))
+    one, other = (Random(seed=7).scores(s) for _ in range(2))
     assert np.array_equal(one, other)
 
 

@@ -22,7 +22,7 @@ from tests.language.questions import BOX
 
 from mintpilot.assembly.talk import Talk
 from mintpilot.core.errors import DeviceError, InputError
-from mintpilot.core.query import Order, Question, Reply
+from mintpilot.core.query import YES_PART, Order, Question, Reply
 from mintpilot.interaction.screen_words import screen_words
 from mintpilot.interaction.terminal import TerminalOperator
 
@@ -116,7 +116,7 @@ def test_what_is_understood_goes_with_the_answer(pipe):
     pipe.say(b"Not the red one, the blue one\n")
     answer = put(asked, BOX, 5.0, real=True)
     assert (answer.reply, answer.understood_by) == (Reply.NO, "rules")
-    assert [(cut.literals[0].values, yes) for cut, yes in answer.also] == [(frozenset({"box-2", "box-3"}), True)]
+    assert [(x.query.literals[0].values, x.part) for x in answer.also] == [(frozenset({"box-2", "box-3"}), YES_PART)]
 
 
 class Later:

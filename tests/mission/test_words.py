@@ -11,7 +11,18 @@ from tests.language import questions
 
 from mintpilot.core.gap import PASSABLE
 from mintpilot.core.mission import AskingSettings
-from mintpilot.core.query import Answer, Literal, Query, Question, Reply, Saying, SayingKind
+from mintpilot.core.query import (
+    NO_PART,
+    YES_PART,
+    Answer,
+    Evidence,
+    Literal,
+    Query,
+    Question,
+    Reply,
+    Saying,
+    SayingKind,
+)
 from mintpilot.mission.belief_state import BeliefState, update
 from mintpilot.mission.rewording import Rewording
 from mintpilot.reasoning.belief import prior_belief
@@ -64,12 +75,16 @@ def cut(gap: str, *values: str) -> Query:
     return Query(literals=(Literal(gap=gap, values=frozenset(values), saying=said),))
 
 
+def said(query: Query) -> Evidence:
+    return Evidence(query=query, part=YES_PART)
+
+
 def beliefs() -> BeliefState:
     gaps = (questions.SMOKE_GAP, questions.BOX_GAP)
     return BeliefState(map=None, belief=prior_belief(gaps))  # type: ignore[arg-type]
 
 
-def heard(query: Query, reply: Reply, *also: tuple[Query, bool], error: float = 0.0):
+def heard(query: Query, reply: Reply, *also: Evidence, error: float = 0.0):
     answer = Answer(reply=reply, latency_s=1.0, also=also)
     return update(beliefs(), query, answer, replace(SETTINGS, answer_error=error))
 
@@ -79,41 +94,41 @@ RED = questions.BOX.query
 
 
 def test_what_is_said_beyond_the_question_is_learnt() -> None:
-    result = heard(RED, Reply.NO, (cut(BOX, "box-2"), True))
+    result = heard(RED, Reply.NO, said(cut(BOX, "box-2")))
     assert result.state.belief.probability_of(BOX, "box-2") == 1.0
-    assert result.state.asked == ((RED, False),)
+    assert result.state.asked == (Evidence(query=RED, part=NO_PART),)
     assert not result.extra_refused
 
 
 def test_one_utterance_is_one_piece_of_evidence() -> None:
     """``Not the red one, the blue one`` may be wrong as a whole: it counts as one answer to 'is it blue'."""
-    result = heard(RED, Reply.NO, (cut(BOX, "box-2"), True), error=0.1)
+    result = heard(RED, Reply.NO, said(cut(BOX, "box-2")), error=0.1)
     prior = np.array(questions.BOX_GAP.prior)
     mass = prior * np.array([0.1, 0.9, 0.1])
     assert result.state.belief.marginal(BOX) == pytest.approx(mass / mass.sum())
 
 
 def test_what_goes_against_the_answer_is_left_out() -> None:
-    result = heard(RED, Reply.YES, (cut(BOX, "box-2"), True))
+    result = heard(RED, Reply.YES, said(cut(BOX, "box-2")))
     assert result.extra_refused
     assert result.state.belief.probability_of(BOX, "box-1") == 1.0
 
 
 def test_beyond_the_question_no_region_is_opened() -> None:
     smoke = questions.SMOKE_GAP.id
-    result = heard(RED, Reply.NO, (cut(smoke, PASSABLE), True))
+    result = heard(RED, Reply.NO, said(cut(smoke, PASSABLE)))
     assert result.state.belief.probability_of(smoke, PASSABLE) == 1.0
     assert smoke not in result.state.confirmed
 
 
 @pytest.mark.parametrize("reply", [Reply.UNSURE, Reply.TIMEOUT])
 def test_without_an_answer_nothing_is_learnt(reply: Reply) -> None:
-    assert heard(RED, reply, (cut(BOX, "box-2"), True)).state.belief.marginal(BOX) == pytest.approx(
+    assert heard(RED, reply, said(cut(BOX, "box-2"))).state.belief.marginal(BOX) == pytest.approx(
         questions.BOX_GAP.prior
     )
 
 
 def test_cuts_about_what_nobody_knows_are_ignored() -> None:
-    result = heard(RED, Reply.NO, (cut("target:9", "x"), True))
+    result = heard(RED, Reply.NO, said(cut("target:9", "x")))
     assert result.state.belief.probability_of(BOX, "box-1") == 0.0
     assert not result.extra_refused

@@ -27,7 +27,7 @@ EXAMPLES = [*sorted((ROOT / "examples").glob("*.yaml")), ROOT / "examples" / "my
     ("spec", "noun", "differs"),
     [
         (schema.VehicleSpec, VehicleLimits, {"endurance_s"}),
-        (schema.AskingSpec, AskingSettings, set()),
+        (schema.AskingSpec, AskingSettings, {"strategy_arguments"}),
         (schema.SurveySpec, SurveySettings, {"resolution_m"}),
         (schema_scene.SolidSpec, scene.Solid, {"attributes"}),
         (schema_scene.SmokeSpec, scene.Smoke, set()),

@@ -10,6 +10,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from drivers.play import open_situation, play, told
 from mintpilot.assembly.registry import load
 from mintpilot.core.gap import Assumptions, Joint
 from mintpilot.core.mission import AskingSettings, CriticalityRule
@@ -27,10 +28,10 @@ from mintpilot.reasoning.tree import build_tree
 from mintpilot.strategies.exhaustive import ExhaustiveStrategy
 from mintpilot.strategies.mint import MintStrategy
 from mintpilot.strategies.random_query import RandomQueryStrategy
-from oracles.play import open_situation, play, told
 from oracles.worlds import BruteForce, World, hypotheses, random_world
 
 EXACT = AskingSettings(delta_c_s=0.0, alpha=0.0, alpha_safe=0.0, goal_entropy_bits=0.0)
+REPLIES = [Reply.YES, Reply.NO, Reply.UNSURE, Reply.TIMEOUT]
 few = settings(max_examples=25, deadline=None)
 very_few = settings(max_examples=10, deadline=None)
 worlds = st.builds(
@@ -84,13 +85,13 @@ def test_the_two_parts_of_a_cut_cover_and_its_gain_is_at_most_a_bit(world: World
     regret = regret_matrix(mint, EXACT)
     for name in ("information-gain", "ec2", "value-of-information"):
         for scored in choose(candidate_queries(mint), mint, regret, load("objective", name)(), EXACT):
-            yes = scored.query.truths(mint.belief)
+            parts = scored.query.part_table(mint.belief)
             assert 0 <= scored.gain_bits <= 1
             assert 0 < scored.yes_probability < 1
-            assert mint.belief.probability[yes].sum() == pytest.approx(scored.yes_probability)
-            for cell in np.ndindex(yes.shape):
+            assert mint.belief.probability[parts == 0].sum() == pytest.approx(scored.yes_probability)
+            for cell in np.ndindex(parts.shape):
                 truth = {g.id: g.values[i] for g, i in zip(mint.belief.gaps, cell, strict=True)}
-                assert scored.query.holds(truth) == yes[cell]
+                assert scored.query.part_of(truth) == parts[cell]
 
 
 @few
@@ -103,7 +104,8 @@ def test_gain_is_the_fall_of_the_class_entropy(world: World) -> None:
         candidate_queries(mint), mint, regret_matrix(mint, asking), load("objective", "ec2")(), asking
     )[:9]:
         left = 0.0
-        for part in (scored.query.truths(mint.belief).ravel(), ~scored.query.truths(mint.belief).ravel()):
+        parts = scored.query.part_table(mint.belief).ravel()
+        for part in (parts == 0, parts == 1):
             mass = [p[part & (classes == c)].sum() for c in range(len(mint.classes))]
             left += sum(mass) * entropy_bits(mass)
         assert scored.gain_bits == pytest.approx(class_entropy_bits(mint) - left, abs=1e-9)
@@ -268,7 +270,7 @@ def test_planner_calls_are_bounded_by_the_nodes(world: World, bound: int) -> Non
 
 
 @few
-@given(worlds, st.integers(0, 3), st.lists(st.sampled_from(list(Reply)), max_size=30), st.sampled_from([0.0, 0.1]))
+@given(worlds, st.integers(0, 3), st.lists(st.sampled_from(REPLIES), max_size=30), st.sampled_from([0.0, 0.1]))
 def test_whatever_is_answered_nothing_unknown_is_entered_and_the_budget_holds(
     world: World, budget: int, replies: list[Reply], error: float
 ) -> None:

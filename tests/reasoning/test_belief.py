@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from mintpilot.core.errors import LimitError, MissionError
 from mintpilot.core.gap import CorrelationGroup, GapKind, KnowledgeGap
-from mintpilot.core.query import Combine, Literal, Query, Reply, Saying, SayingKind
+from mintpilot.core.query import NO_PART, YES_PART, Combine, Literal, Query, Saying, SayingKind
 from mintpilot.reasoning.belief import condition, extend, prior_belief
 
 SAYING = Saying(kind=SayingKind.VALUE)
@@ -63,7 +63,7 @@ def test_the_posterior_is_bayes(priors: list[float], told: list[tuple[set[int], 
     answers = []
     for which, combine, yes in told:
         query = cut(*(f"g{i}" for i in sorted(which)), combine=combine)
-        update = condition(belief, query, Reply.YES if yes else Reply.NO, error)
+        update = condition(belief, query, YES_PART if yes else NO_PART, error)
         if not update.contradiction:
             answers.append((query, yes))
         belief = update.belief
@@ -74,47 +74,46 @@ def test_the_posterior_is_bayes(priors: list[float], told: list[tuple[set[int], 
 def test_thirty_gaps_are_thirty_small_factors() -> None:
     belief = prior_belief([gap(f"g{i:02}") for i in range(30)])
     assert len(belief.factors) == 30
-    joined = condition(belief, cut("g00", "g07", "g19", combine=Combine.ANY), Reply.YES, 0.0).belief
+    joined = condition(belief, cut("g00", "g07", "g19", combine=Combine.ANY), YES_PART, 0.0).belief
     assert sorted(f.probability.size for f in joined.factors) == [2] * 27 + [8]
     # Once it is known which one it was, the gaps come apart again.
-    settled = condition(joined, cut("g00", "g07", combine=Combine.ANY), Reply.NO, 0.0).belief
+    settled = condition(joined, cut("g00", "g07", combine=Combine.ANY), NO_PART, 0.0).belief
     assert len(settled.factors) == 30
     assert settled.probability_of("g19", "passable") == 1
 
 
 def test_with_no_error_an_answer_prunes_and_unsure_tells_nothing() -> None:
     belief = prior_belief([gap("a"), gap("b")])
-    assert condition(belief, cut("a"), Reply.NO, 0.0).belief.probability_of("a", "passable") == 0
-    for reply in (Reply.UNSURE, Reply.TIMEOUT):
-        assert condition(belief, cut("a"), reply, 0.0).belief is belief
+    assert condition(belief, cut("a"), NO_PART, 0.0).belief.probability_of("a", "passable") == 0
+    assert condition(belief, cut("a"), None, 0.0).belief is belief
 
 
 def test_a_contradiction_is_a_value_and_leaves_the_belief() -> None:
-    belief = condition(prior_belief([gap("a"), gap("b")]), cut("a"), Reply.YES, 0.0).belief
-    update = condition(belief, cut("a", "b", combine=Combine.ANY), Reply.NO, 0.0)
+    belief = condition(prior_belief([gap("a"), gap("b")]), cut("a"), YES_PART, 0.0).belief
+    update = condition(belief, cut("a", "b", combine=Combine.ANY), NO_PART, 0.0)
     assert update.contradiction
     assert update.expected == 0
     assert update.belief is belief
 
 
-@pytest.mark.parametrize(("prior", "reply"), [((1.0, 0.0), Reply.NO), ((0.0, 1.0), Reply.YES)])
-def test_answers_against_priors_of_one_and_zero_are_contradictions(prior: tuple[float, ...], reply: Reply) -> None:
-    update = condition(prior_belief([gap("a", prior)]), cut("a"), reply, 0.0)
+@pytest.mark.parametrize(("prior", "part"), [((1.0, 0.0), NO_PART), ((0.0, 1.0), YES_PART)])
+def test_answers_against_priors_of_one_and_zero_are_contradictions(prior: tuple[float, ...], part: int) -> None:
+    update = condition(prior_belief([gap("a", prior)]), cut("a"), part, 0.0)
     assert update.contradiction
     assert update.belief.marginal("a").tolist() == list(prior)
 
 
 def test_an_answer_that_error_explains_is_taken_in() -> None:
     belief = prior_belief([gap("a", (0.99, 0.01))])
-    assert not condition(belief, cut("a"), Reply.NO, 0.1).contradiction
-    assert condition(belief, cut("a"), Reply.NO, 0.01).contradiction
+    assert not condition(belief, cut("a"), NO_PART, 0.1).contradiction
+    assert condition(belief, cut("a"), NO_PART, 0.01).contradiction
 
 
 def test_correlated_gaps_are_one_factor() -> None:
     group = CorrelationGroup(gaps=("b", "a"), joint=((("passable", "passable"), 0.3), (("blocked", "blocked"), 0.7)))
     belief = prior_belief([gap("a"), gap("b"), gap("c")], [group])
     assert belief.probability_of("a", "passable") == pytest.approx(0.3)
-    after = condition(belief, cut("a"), Reply.YES, 0.0).belief
+    after = condition(belief, cut("a"), YES_PART, 0.0).belief
     assert after.probability_of("b", "passable") == 1
     assert after.probability_of("c", "passable") == 0.5
     # A group of which one gap is open counts by its marginal.
@@ -136,12 +135,12 @@ def test_bad_groups_are_refused() -> None:
 def test_answers_that_couple_too_much_are_refused() -> None:
     belief = prior_belief([gap(f"g{i}") for i in range(6)])
     with pytest.raises(LimitError, match="fewer gaps at once"):
-        condition(belief, cut(*(f"g{i}" for i in range(5))), Reply.NO, 0.0, max_joint=16)
+        condition(belief, cut(*(f"g{i}" for i in range(5))), NO_PART, 0.0, max_joint=16)
 
 
 def test_extend_keeps_what_is_known_adds_and_drops() -> None:
     belief = prior_belief([gap("a"), gap("b"), gap("c")])
-    belief = condition(belief, cut("a", "b", combine=Combine.ANY), Reply.YES, 0.0).belief
+    belief = condition(belief, cut("a", "b", combine=Combine.ANY), YES_PART, 0.0).belief
     after = extend(belief, [gap("b"), gap("c", (0.9, 0.1)), gap("d", (0.2, 0.8))])
     assert [g.id for g in after.gaps] == ["b", "c", "d"]
     assert after.probability_of("b", "passable") == pytest.approx(2 / 3)

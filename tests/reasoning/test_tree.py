@@ -13,7 +13,7 @@ from mintpilot.core.tree import LeafReason, StopReason
 from mintpilot.reasoning.belief import prior_belief
 from mintpilot.reasoning.certificate import certify
 from mintpilot.reasoning.classes import leaves_of
-from mintpilot.reasoning.explain import gap_accounts
+from mintpilot.reasoning.explain import decided, explain_gaps
 from mintpilot.reasoning.metrics import FrechetMetric
 from mintpilot.reasoning.tree import build_tree
 from oracles.worlds import BruteForce, World, random_world
@@ -137,13 +137,14 @@ def test_a_plan_that_relies_on_an_unknown_gap_is_an_error() -> None:
         build_tree(BruteForce(world), prior_belief(()), EXACT, FrechetMetric())
 
 
-def test_the_account_of_every_gap_has_figures() -> None:
+def test_the_explanation_of_every_gap_has_figures() -> None:
     world = corridor(1, goals=2)
     world.regions["aside"] = frozenset({(0, 0)})
     mint, space = tree_of(world)
-    accounts = gap_accounts(space, prior_belief(world.gaps), mint, EXACT, FrechetMetric(), asked={"r00"})
-    aside, gate, target = accounts
-    assert [a.gap_id for a in accounts] == ["aside", "r00", "target"]
+    worth = explain_gaps(space, prior_belief(world.gaps), mint, EXACT, FrechetMetric())
+    explanations = tuple(decided(one, one.gap_id == "r00") for one in worth)
+    aside, gate, target = explanations
+    assert [a.gap_id for a in explanations] == ["aside", "r00", "target"]
     assert (aside.relevant, aside.asked) == (False, False)
     assert aside.cost_if_favourable_s == aside.cost_if_unfavourable_s
     assert aside.gain_bits == aside.regret_saved_s == 0
@@ -160,10 +161,10 @@ def test_the_account_of_every_gap_has_figures() -> None:
     assert "bits are not known" in target.why
 
 
-def test_accounts_say_where_there_is_no_way() -> None:
+def test_explanations_say_where_there_is_no_way() -> None:
     world = corridor(detour=False)
     mint, space = tree_of(world)
-    (gate,) = gap_accounts(space, prior_belief(world.gaps), mint, EXACT, FrechetMetric())
+    (gate,) = explain_gaps(space, prior_belief(world.gaps), mint, EXACT, FrechetMetric())
     assert gate.cost_if_unfavourable_s is None
     assert "none the other way" in gate.why
 

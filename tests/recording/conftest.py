@@ -13,12 +13,12 @@ from mintpilot.core.gap import BLOCKED, PASSABLE, Assumptions, Candidate, GapKin
 from mintpilot.core.geometry import Box, GridFrame
 from mintpilot.core.mission import Mission, Outcome, Verdict
 from mintpilot.core.observation import Attribute, CameraModel, Detection, Frame, RegionKind
-from mintpilot.core.plan import Leg, Plan, PlanningProblem, Site, Stop
+from mintpilot.core.plan import Leg, Plan, Site, Stop
 from mintpilot.core.query import Answer, Literal, Query, Question, Reply, Saying, SayingKind
 from mintpilot.core.semantic_map import Cell, Knowledge, MapObject, Region, Room, SemanticMap
 from mintpilot.core.task import Action, Reference, SubGoal, Task
 from mintpilot.core.trajectory import FlightEnd, FlightLog, Trajectory
-from mintpilot.core.tree import Certificate, GapAccount, LeafReason, Mint, Node, PlanClass, ScoredQuery, StopReason
+from mintpilot.core.tree import Certificate, GapExplanation, LeafReason, Mint, Node, PlanClass, ScoredQuery, StopReason
 
 HOSTILE = "<script>alert('x')</script> & \x1b[31m\"red\""
 """What a sign in a picture, or a model, may say."""
@@ -127,7 +127,7 @@ def tell(*, label: str = "box", description: str = "the grey smoke near the gate
         classes=tuple(PlanClass(plan=leaf.plan, probability=0.5, given=(leaf.given,)) for leaf in leaves),
     )  # fmt: skip
     query = Query(literals=(Literal(gap=SMOKE, values=frozenset({PASSABLE}), saying=Saying(kind=SayingKind.VALUE)),))
-    scored = ScoredQuery(query=query, score=1.0, gain_bits=1.0, regret_saved_s=5.9, yes_probability=0.5)
+    scored = ScoredQuery(query=query, score=1.0, gain_bits=1.0, regret_saved_s=5.9, reply_probabilities=(0.5, 0.5))
     question = Question(
         query=query, text=f"Can I fly through {description}?", yes_means="I fly straight through it, 10 s",
         no_means="I fly around it, 25 s", gaps=(smoke,),
@@ -137,12 +137,12 @@ def tell(*, label: str = "box", description: str = "the grey smoke near the gate
         reason=StopReason.ONE_CLASS, top_class_probability=1.0, entropy_bits=0.0, best_gain_bits=0.0,
         bound_s=0.0 if reply in (Reply.YES, Reply.NO) else float("inf"), text="One way to fly holds 100 % of the mass.",
     )  # fmt: skip
-    accounts = (
-        GapAccount(gap_id=SMOKE, description=description, kind="obstacle", asked=True, relevant=True,
+    explanations = (
+        GapExplanation(gap_id=SMOKE, description=description, kind="obstacle", asked=True, relevant=True,
                    why="Flying around costs 14.9 s more than 2.0 s, and the paths are 6.5 m apart.",
                    cost_if_favourable_s=direct.cost_s, cost_if_unfavourable_s=around.cost_s, divergence_m=6.5,
                    entropy_bits=1.0, gain_bits=1.0, regret_saved_s=5.9),
-        GapAccount(gap_id="target:1", description="the medicine box", kind="target", asked=False, relevant=False,
+        GapExplanation(gap_id="target:1", description="the medicine box", kind="target", asked=False, relevant=False,
                    why="Its entropy of 0.57 bit does not change the way by more than 0.4 s.",
                    cost_if_favourable_s=direct.cost_s, cost_if_unfavourable_s=float("inf"), entropy_bits=0.57),
     )  # fmt: skip
@@ -153,8 +153,6 @@ def tell(*, label: str = "box", description: str = "the grey smoke near the gate
         instruction=mission.instruction, subgoals=(SubGoal(action=Action.GO, reference=Reference(phrase="box")),)
     )
     before = hall(label=label, description=description)
-    problem = PlanningProblem(map=before, start_m=mission.start_m, stops=(chosen.legs[0].stop,),
-                              gaps=(smoke, target), limits=mission.limits)  # fmt: skip
     known = Knowledge.YES if reply is Reply.YES else Knowledge.NO
     survey, survey_log = flight(way([(2, 2), (18, 2), (18, 8)]))
     story: list[ev.Event] = [ev.MissionStarted(mission=mission, task=task, seed=7, strategy="mint")]
@@ -167,16 +165,16 @@ def tell(*, label: str = "box", description: str = "the grey smoke near the gate
         ev.Timed(stage="survey", seconds=2.5),
         ev.MapUpdated(map=before, why="survey"),
         ev.Timed(stage="mapping", seconds=0.25),
-        ev.Deliberated(round=1, gaps=(smoke, target), problem=problem, mint=mint, chosen=scored,
+        ev.Deliberated(round=1, gaps=(smoke, target), mint=mint, chosen=scored,
                        alternatives=(scored,), certificate=None, seconds=0.12),
         ev.Timed(stage="deliberation", seconds=0.12),
         ev.Asked(question=question, scored=scored, wording_s=0.001,
                  answer=Answer(reply=reply, latency_s=4.2, text=words)),
         ev.MapUpdated(map=hall(known, label=label, description=description), why="answer"),
-        ev.Deliberated(round=2, gaps=(target,), problem=problem, mint=None, chosen=None, alternatives=(),
+        ev.Deliberated(round=2, gaps=(target,), mint=None, chosen=None, alternatives=(),
                        certificate=certificate, seconds=0.03),
         ev.Timed(stage="deliberation", seconds=0.03),
-        ev.PlanChosen(plan=chosen, certificate=certificate, accounts=accounts),
+        ev.PlanChosen(plan=chosen, certificate=certificate, explanations=explanations),
         ev.Noticed(kind="new-object", text=f"Something new was seen in flight: {label}."),
         ev.LegFlown(phase="mission", stop_id="goal-1", trajectory=trajectory, log=log),
         ev.Timed(stage="flight", seconds=1.1),

@@ -11,7 +11,18 @@ from rich.console import Console
 
 from mintpilot.core import events as ev
 from mintpilot.core.errors import RecordError
-from mintpilot.core.query import Literal, Query, Reply, Saying, SayingKind
+from mintpilot.core.query import (
+    YES_PART,
+    Evidence,
+    Literal,
+    Option,
+    Query,
+    Reply,
+    Saying,
+    SayingKind,
+    answer_for,
+    choice,
+)
 from mintpilot.recording.build import build_record, flight_record
 from mintpilot.recording.history import History
 from mintpilot.recording.in_memory import HistoryRecorder
@@ -95,8 +106,8 @@ def test_gaps_without_an_account_say_so(make_events):
 def test_an_account_of_asking_outlives_later_rounds(make_events):
     story = list(make_events())
     chosen = next(e for e in story if isinstance(e, ev.PlanChosen))
-    later = tuple(dataclasses.replace(a, asked=False, why="Settled.") for a in chosen.accounts)
-    record = record_of([*story, dataclasses.replace(chosen, accounts=later)])
+    later = tuple(dataclasses.replace(a, asked=False, why="Settled.") for a in chosen.explanations)
+    record = record_of([*story, dataclasses.replace(chosen, explanations=later)])
     assert record.gaps[0].asked
     assert "14.9 s more" in record.gaps[0].why
     assert record.gaps[1].why == "Settled."
@@ -146,7 +157,9 @@ def _worded(story):
     other = Query(literals=(Literal(gap=target.id, values=frozenset({target.values[0]}), saying=said),))
     for event in story:
         if isinstance(event, ev.Asked):
-            answer = dataclasses.replace(event.answer, also=((other, True),), understood_by="model")
+            answer = dataclasses.replace(
+                event.answer, also=(Evidence(query=other, part=YES_PART),), understood_by="model"
+            )
             better = dataclasses.replace(event.question, text="Is the <b>smoke</b> safe?", worded_by="tiny")
             first = event.question.text
             event = dataclasses.replace(event, question=better, answer=answer, first_text=first, better_s=0.8)
@@ -183,3 +196,48 @@ def test_without_a_model_the_report_says_nothing_of_one(make_events, tmp_path):
     report = report_html(record_of(make_events()), tmp_path)
     assert "Shown first as" not in report
     assert "proposed to ask" not in report
+
+
+def test_a_choice_is_in_the_record_with_all_its_replies(make_events, tmp_path):
+    story = list(make_events())
+    target = next(e for e in story if isinstance(e, ev.Deliberated)).gaps[1]
+    options = [
+        Option(
+            label=f"the {value}",
+            literals=(
+                Literal(gap=target.id, values=frozenset({value}), saying=Saying(kind=SayingKind.VALUE, value=value)),
+            ),
+        )
+        for value in target.values[:2]
+    ]
+    query = choice(options, (target,))
+    means = tuple(f"I fly to {query.part_words(part)}" for part in range(query.part_count))
+    even = (1 / query.part_count,) * query.part_count
+
+    def told(event, part):
+        if isinstance(event, ev.Asked):
+            question = dataclasses.replace(event.question, query=query, option_means=means)
+            scored = dataclasses.replace(event.scored, query=query, reply_probabilities=even)
+            return dataclasses.replace(event, question=question, scored=scored, answer=answer_for(query, part))
+        return event
+
+    for part in range(query.part_count):
+        record = record_of([told(event, part) for event in story])
+        (question,) = record.questions
+        assert (question.reply, question.option) == (Reply.OPTION, part)
+        assert question.replies == tuple(query.part_words(i) for i in range(query.part_count))
+        assert question.reply_probabilities == pytest.approx(even)
+        assert MissionRecord.model_validate_json(record.model_dump_json()) == record
+        page = report_html(record, tmp_path)
+        assert query.part_words(part) in page
+        assert means[part] in page
+
+
+def test_a_record_of_before_there_were_choices_is_read(make_events):
+    data = json.loads(record_of(make_events()).model_dump_json())
+    (question,) = data["questions"]
+    for name in ("reply_probabilities", "replies", "option_means", "option"):
+        del question[name]
+    question["yes_probability"] = 0.5
+    (old,) = MissionRecord.model_validate(data).questions
+    assert (old.replies, old.option, old.yes_probability) == (("yes", "no"), None, 0.5)

@@ -21,7 +21,7 @@ from mintpilot.core.geometry import Box, GridFrame
 from mintpilot.core.mission import AskingSettings
 from mintpilot.core.observation import CameraModel, Frame, RegionKind
 from mintpilot.core.plan import Plan, VehicleLimits
-from mintpilot.core.query import Query
+from mintpilot.core.query import Answer, Evidence, Query, Reply
 from mintpilot.core.semantic_map import Knowledge, MapObject, Region, Room, SemanticMap
 
 TEXTS = st.text(st.characters(exclude_categories=()), max_size=6)
@@ -170,6 +170,12 @@ def built(cls: Any, depth: int) -> st.SearchStrategy[Any]:
     if cls is Query:
         literals = values(typing.get_args(hints["literals"])[0], depth + 1)
         fields["literals"] = st.lists(literals, min_size=1, max_size=2).map(tuple)
+        fields |= {"options": st.just(()), "none_of_these": st.just(False)}
+    if cls is Answer:
+        fields["reply"] = st.sampled_from([reply for reply in Reply if reply is not Reply.OPTION])
+        fields["option"] = st.none()
+    if cls is Evidence:
+        fields["part"] = st.integers(0, 1)
     if cls is Plan:  # else the plan computes one from the way, and the way makes no sense here
         fields["signature"] = st.text(min_size=1, max_size=3)
 

@@ -17,6 +17,7 @@ if str(ROOT) not in sys.path:
 
 from bench.twenty_questions import OneEach, opening  # noqa: E402
 
+from drivers.play import open_situation, told  # noqa: E402
 from mintpilot.core.gap import BLOCKED, Candidate, GapKind, KnowledgeGap  # noqa: E402
 from mintpilot.core.mission import AskingSettings  # noqa: E402
 from mintpilot.core.observation import Attribute  # noqa: E402
@@ -29,7 +30,6 @@ from mintpilot.reasoning.situation import regret_matrix  # noqa: E402
 from mintpilot.strategies.flying import tree_of  # noqa: E402
 from mintpilot.strategies.mint import MintStrategy  # noqa: E402
 from mintpilot.strategies.proposals import gain_bound_bits  # noqa: E402
-from oracles.play import open_situation, told  # noqa: E402
 from strategies.test_strategies import EXACT, gate  # noqa: E402
 
 NAMES = ("ann", "bea", "cid", "dan", "eve", "fay", "gus", "hal")

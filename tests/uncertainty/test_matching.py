@@ -12,13 +12,13 @@ from mintpilot.core.semantic_map import MapObject
 from mintpilot.core.task import Action, Reference, SubGoal, Task
 from mintpilot.uncertainty import find_gaps
 from mintpilot.uncertainty.describing import describe_apart
-from mintpilot.uncertainty.matching import View, match
+from mintpilot.uncertainty.matching import Standpoint, match
 from mintpilot.uncertainty.things import things_of
 
 from .worlds import START_M, thing, world
 
 GUESS_WHO = Path(__file__).resolve().parents[3] / "shared" / "data" / "twentyq" / "guess_who.json"
-VIEW = View(start_m=START_M, towards_m=(10.0, 7.5, 2.0))
+VIEW = Standpoint(start_m=START_M, towards_m=(10.0, 7.5, 2.0))
 OBJECTS = (
     thing("box-1", "box", (5, 3, 0.2), edge_m=0.3, colour="red"),
     thing("box-2", "box", (9, 9, 0.2), edge_m=0.9, colour="blue"),

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TypeAlias, cast
 
 from mintpilot.assembly.components import Choices, VehicleChoice, components_for, deliberation_parts, scripted_operator
 from mintpilot.assembly.deliberation_report import DeliberationReport, deliberation_report
+from mintpilot.assembly.strategies import Argument, strategy_label
 from mintpilot.assembly.talk import Talk, talk_for
 from mintpilot.assembly.validation import validation_problems
 from mintpilot.assembly.worlds import World, build_world
@@ -47,6 +48,7 @@ def plan_mission(
     mission: str | Path | MissionFile,
     *,
     strategy: str = "mint",
+    strategy_arguments: Mapping[str, Argument] | None = None,
     seed: int | None = None,
     base: Path | None = None,
     llm: str | LanguageModel | None = None,
@@ -57,6 +59,7 @@ def plan_mission(
     Args:
         mission: a mission file's path, or its contents.
         strategy: name of the method of asking.
+        strategy_arguments: its own, e.g. ``{"quantile": 0.8}``; they override those of the file.
         seed: overrides the seed in the file.
         base: folder that file names in the mission are relative to; default: that of the file, or the present one.
         llm: language model by its registered name, or one that was made already; default: as the file says.
@@ -70,12 +73,13 @@ def plan_mission(
     """
     file, folder = _opened(mission, base)
     with talk_for(file.language, llm=llm, lang=lang) as talk:
-        return _planned(file, folder, talk, strategy=strategy, seed=seed)
+        choices = Choices(strategy=strategy, strategy_arguments=_arguments(file, strategy, strategy_arguments))
+        return _planned(file, folder, talk, choices, seed=seed)
 
 
-def _planned(file: MissionFile, folder: Path, talk: Talk, *, strategy: str, seed: int | None) -> DeliberationReport:
+def _planned(file: MissionFile, folder: Path, talk: Talk, choices: Choices, *, seed: int | None) -> DeliberationReport:
     world = build_world(file, base=folder, seed=seed, parse=talk.parse)
-    parts = deliberation_parts(world, Choices(strategy=strategy), talk)
+    parts = deliberation_parts(world, choices, talk)
     begun = time.perf_counter()
     seen = preview(world.map, parts)
     seconds = time.perf_counter() - begun
@@ -88,8 +92,8 @@ def _planned(file: MissionFile, folder: Path, talk: Talk, *, strategy: str, seed
     return deliberation_report(
         seen,
         mission=file.name,
-        strategy=strategy,
-        accounts=explanations(seen.first.situation, decision.mint),
+        strategy=strategy_label(choices.strategy, choices.strategy_arguments),
+        explanations=explanations(seen.first.situation, decision.mint),
         question=question,
         seconds=seconds,
     )
@@ -101,6 +105,7 @@ def run_mission(
     operator: AnyOperator | tuple[AnyOperator, ...] = "scripted",
     vehicle: str = "mujoco",
     strategy: str = "mint",
+    strategy_arguments: Mapping[str, Argument] | None = None,
     seed: int | None = None,
     out: Path | None = None,
     progress: Progress | None = None,
@@ -116,6 +121,7 @@ def run_mission(
             that knows the truth, with the errors that the file states. Several may be given.
         vehicle: ``"mujoco"`` or ``"kinematic"``; a mission on a given map is always flown by the latter.
         strategy: name of the method of asking.
+        strategy_arguments: its own, e.g. ``{"quantile": 0.8}``; they override those of the file.
         seed: overrides the seed in the file.
         out: the run folder; None keeps nothing on disk but returns the record.
         progress: told about every event.
@@ -133,7 +139,11 @@ def run_mission(
         MissingPartError: MuJoCo is chosen, or a language model, but not installed.
     """
     file, folder = _opened(mission, base)
-    choices = Choices(strategy=strategy, vehicle=_vehicle(vehicle))
+    choices = Choices(
+        strategy=strategy,
+        strategy_arguments=_arguments(file, strategy, strategy_arguments),
+        vehicle=_vehicle(vehicle),
+    )
     with talk_for(file.language, llm=llm, lang=lang) as talk:
         world = build_world(file, base=folder, seed=seed, parse=talk.parse)
         several = operator if isinstance(operator, tuple) else (operator,)
@@ -181,6 +191,11 @@ def _opened(mission: str | Path | MissionFile, base: Path | None) -> tuple[Missi
         return mission, base or Path.cwd()
     path = Path(mission)
     return read_mission(path), base or path.parent
+
+
+def _arguments(file: MissionFile, strategy: str, given: Mapping[str, Argument] | None) -> dict[str, Argument]:
+    """The strategy's arguments: those of the file, and what the caller gives instead."""
+    return {**file.asking.strategy_arguments.get(strategy, {}), **(given or {})}
 
 
 def _vehicle(name: str) -> VehicleChoice:

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from contextlib import AbstractContextManager, ExitStack
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import StrEnum
 
 import numpy as np
 
 from mintpilot.assembly.registry import load
+from mintpilot.assembly.strategies import Argument, make_objective, make_strategy, strategy_label
 from mintpilot.assembly.talk import Talk
 from mintpilot.assembly.worlds import World
 from mintpilot.core.geometry import GridFrame
@@ -42,6 +44,8 @@ class Choices:
     """What a command line or a caller chooses."""
 
     strategy: str = "mint"
+    strategy_arguments: Mapping[str, Argument] = field(default_factory=dict)
+    """The strategy's own, e.g. ``{"quantile": 0.8}``."""
     vehicle: VehicleChoice = VehicleChoice.MUJOCO
     planner: str = "grid"
     perception: str = "geometric"
@@ -53,15 +57,16 @@ def deliberation_parts(world: World, choices: Choices, talk: Talk | None = None)
 
     Raises:
         UnknownNameError: a strategy, objective, metric or planner that nobody registered.
+        InputError: the strategy does not take those arguments.
     """
     asking = world.mission.asking
     return DeliberationParts(
         mission=world.mission,
         task=world.task,
         planner=load("planner", choices.planner)(),
-        strategy=load("strategy", choices.strategy)(),
+        strategy=make_strategy(choices.strategy, seed=world.seed, arguments=choices.strategy_arguments),
         metric=load("metric", asking.impact_metric)(),
-        objective=load("objective", asking.objective)(),
+        objective=make_objective(asking.objective, seed=world.seed),
         groups=world.groups,
         proposer=talk.proposer if talk is not None else None,
         word=talk.word if talk is not None else word_question,
@@ -160,7 +165,7 @@ class _Components(AbstractContextManager[MissionComponents]):
             simulated=True,
             watch_map=watch_map,
             digests=self._digests,
-            strategy_name=self._choices.strategy,
+            strategy_name=strategy_label(self._choices.strategy, self._choices.strategy_arguments),
             planner_name=self._choices.planner,
             language=self._talk.lang,
             language_model=self._talk.model_name,

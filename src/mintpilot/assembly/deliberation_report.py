@@ -7,7 +7,7 @@ from pydantic import BaseModel, ConfigDict
 from mintpilot.core.gap import Assumptions, KnowledgeGap
 from mintpilot.core.ports import Ask, Fly
 from mintpilot.core.query import Question
-from mintpilot.core.tree import GapAccount, Mint
+from mintpilot.core.tree import GapExplanation, Mint
 from mintpilot.mission.preview import Preview
 from mintpilot.recording.record import TreeRecord
 from mintpilot.recording.tree_data import tree_record
@@ -59,7 +59,14 @@ class QueryReport(_Report):
     no_means: str
     gaps: list[str]
     gain_bits: float
-    yes_probability: float
+    yes_probability: float | None
+    """Null for a choice."""
+    replies: list[str]
+    """What can be answered: ``yes`` and ``no``, or the options of a choice."""
+    reply_probabilities: list[float]
+    """With which each of them is expected."""
+    option_means: list[str]
+    """Of a choice: the consequence of each reply."""
     regret_saved_s: float
 
 
@@ -98,7 +105,7 @@ def deliberation_report(
     *,
     mission: str,
     strategy: str,
-    accounts: tuple[GapAccount, ...],
+    explanations: tuple[GapExplanation, ...],
     question: Question | None,
     seconds: float,
 ) -> DeliberationReport:
@@ -110,7 +117,9 @@ def deliberation_report(
     return DeliberationReport(
         mission=mission,
         strategy=strategy,
-        gaps=[_gap(gaps[account.gap_id], account) for account in accounts if account.gap_id in gaps],
+        gaps=[
+            _gap(gaps[explanation.gap_id], explanation) for explanation in explanations if explanation.gap_id in gaps
+        ],
         tree=tree,
         tree_text=tree_text(tree) if tree else "",
         plan_classes=_classes(decision.mint),
@@ -125,20 +134,20 @@ def deliberation_report(
     )
 
 
-def _gap(gap: KnowledgeGap, account: GapAccount) -> GapReport:
+def _gap(gap: KnowledgeGap, explanation: GapExplanation) -> GapReport:
     return GapReport(
         id=gap.id,
         kind=str(gap.kind),
         description=gap.description,
         values=dict(zip(gap.values, gap.prior, strict=True)),
-        critical=account.relevant,
-        why=account.why,
-        cost_if_favourable_s=account.cost_if_favourable_s,
-        cost_if_unfavourable_s=account.cost_if_unfavourable_s,
-        divergence_m=account.divergence_m,
-        entropy_bits=account.entropy_bits,
-        gain_bits=account.gain_bits,
-        regret_saved_s=account.regret_saved_s,
+        critical=explanation.relevant,
+        why=explanation.why,
+        cost_if_favourable_s=explanation.cost_if_favourable_s,
+        cost_if_unfavourable_s=explanation.cost_if_unfavourable_s,
+        divergence_m=explanation.divergence_m,
+        entropy_bits=explanation.entropy_bits,
+        gain_bits=explanation.gain_bits,
+        regret_saved_s=explanation.regret_saved_s,
     )
 
 
@@ -166,6 +175,9 @@ def _query(ask: Ask, question: Question) -> QueryReport:
         no_means=question.no_means,
         gaps=list(scored.query.gap_ids),
         gain_bits=scored.gain_bits,
-        yes_probability=scored.yes_probability,
+        yes_probability=None if scored.query.is_choice else scored.yes_probability,
+        replies=[scored.query.part_words(part) for part in range(scored.query.part_count)],
+        reply_probabilities=list(scored.reply_probabilities),
+        option_means=list(question.option_means),
         regret_saved_s=scored.regret_saved_s,
     )

@@ -6,6 +6,7 @@ the entry-point group ``mintpilot.<port>``, e.g. ``[project.entry-points."mintpi
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from importlib import import_module
 from importlib.metadata import EntryPoint, entry_points
 from types import MappingProxyType
@@ -25,7 +26,7 @@ BUILT_IN: Final = MappingProxyType(
                 "random": "mintpilot.strategies.random_query:RandomQueryStrategy",
                 "passive-conservative": "mintpilot.strategies.passive:ConservativeStrategy",
                 "passive-risky": "mintpilot.strategies.passive:RiskyStrategy",
-                "pure-llm": "mintpilot.strategies.passive:PureLlmStrategy",
+                "passive-mixture": "mintpilot.strategies.passive:PassiveMixtureStrategy",
             }
         ),
         "objective": MappingProxyType(
@@ -58,6 +59,8 @@ BUILT_IN: Final = MappingProxyType(
 """Port → name → where it is. Every entry is called without arguments to make a part."""
 
 
+FORMER: Final = MappingProxyType({"strategy": MappingProxyType({"pure-llm": "passive-mixture"})})
+"""Port → former name → present one. Former names are told, not taken: records that hold them stay readable."""
 _CALLED: Final = MappingProxyType({"language": "language model"})
 """Ports whose name says too little in a message."""
 
@@ -81,7 +84,19 @@ def load(port: str, name: str) -> type:
     for entry in _plug_ins(port):
         if entry.name == name:
             return _load_plug_in(port, entry)
-    raise UnknownNameError(_CALLED.get(port, port), name, names(port))
+    raise unknown(port, name, names(port))
+
+
+def present_name(strategy: str) -> str:
+    """What a strategy that is named in an older record is called now."""
+    return FORMER["strategy"].get(strategy, strategy)
+
+
+def unknown(port: str, name: str, known: Iterable[str]) -> UnknownNameError:
+    """The error for a name of that port that is not among the known ones; a former name is told as such."""
+    return UnknownNameError(
+        _CALLED.get(port, port), name, known, now=FORMER[port].get(name, "") if port in FORMER else ""
+    )
 
 
 def _plug_ins(port: str) -> tuple[EntryPoint, ...]:

@@ -9,7 +9,7 @@ from mintpilot.assembly.guarded_model import GuardedModel
 from mintpilot.assembly.registry import load
 from mintpilot.core.geometry import Vec3
 from mintpilot.core.ports import LanguageModel, Proposer
-from mintpilot.core.query import Meaning, Order, Query, Question
+from mintpilot.core.query import YES_PART, Evidence, Meaning, Order, Query, Question
 from mintpilot.core.task import Task
 from mintpilot.core.tree import Mint
 from mintpilot.elicitation.wording import word_question
@@ -150,5 +150,5 @@ def _meaning(understood: Understood) -> Meaning:
         return Meaning(reply=None, order=understood.command, by=understood.by)
     if understood.reading is Reading.OTHER:
         return Meaning(reply=None, by=understood.by)
-    also = () if understood.also is None else ((Query(literals=(understood.also,)), True),)
+    also = () if understood.also is None else (Evidence(query=Query(literals=(understood.also,)), part=YES_PART),)
     return Meaning(reply=understood.reply, also=also, by=understood.by)

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 
 from mintpilot.assembly.registry import load
+from mintpilot.assembly.strategies import make_strategy
 from mintpilot.assembly.worlds import build_world, scenario_of
 from mintpilot.core.errors import MintPilotError
 from mintpilot.language.instruction import parse_instruction
@@ -29,6 +31,7 @@ def _mistakes(file: MissionFile, base: Path) -> Iterator[tuple[Place, str]]:
     found = [
         *_tried(("asking", "objective"), lambda: load("objective", file.asking.objective)),
         *_tried(("asking", "impact_metric"), lambda: load("metric", file.asking.impact_metric)),
+        *_strategy_mistakes(file),
         *_tried(("language", "model"), lambda: load("language", file.language.model)),
     ]
     if file.goals is None:
@@ -38,6 +41,17 @@ def _mistakes(file: MissionFile, base: Path) -> Iterator[tuple[Place, str]]:
     yield from found
     if not found:
         yield from _world_mistakes(file, base)
+
+
+def _strategy_mistakes(file: MissionFile) -> list[tuple[Place, str]]:
+    """Arguments that a strategy does not take, or strategies that nobody registered."""
+    return [
+        mistake
+        for name, arguments in file.asking.strategy_arguments.items()
+        for mistake in _tried(
+            ("asking", "strategy_arguments", name), partial(make_strategy, name, seed=0, arguments=arguments)
+        )
+    ]
 
 
 def _scenario_mistakes(world: ScenarioWorld) -> list[tuple[Place, str]]:

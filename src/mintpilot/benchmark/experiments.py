@@ -22,14 +22,15 @@ from mintpilot.core.errors import InputError
 TABLE1 = (
     "passive-conservative",
     "passive-risky",
-    "pure-llm",
+    "passive-mixture",
     "exhaustive",
     "mint",
     "mint-paper",
     "optimal",
 )
-"""The paper's three, the two stances that its 'Pure LLM' mixes, both rules, and the exact yardstick."""
-BOXES = ("passive-conservative", "pure-llm", "mint")
+"""The paper's Exhaustive and MINT, MINT by both rules, the two stances of its 'Pure LLM' and a mixture of them, and the
+exact yardstick."""
+BOXES = ("passive-conservative", "passive-mixture", "mint")
 GAPS = (
     "passive-conservative",
     "exhaustive",

@@ -5,10 +5,11 @@ entered through gymnasium's entry-point group, and on import of this module.
 
 One episode is one world of a scenario and its mission on the map of a perfect survey, with a person who answers after
 the truth. The observation is the belief: for each of up to ``max_gaps`` gaps its kind, the probability of its first
-value, whether the tree branches on it, and what the best question about it tells of the plan, bits. Action 0 commits:
-the safe plan that loses least on average is flown. Action i asks the best question about gap i. The reward is the
-negative of the cost axis of the benchmark: a question's price for each question, and in the end the seconds of flight,
-or the price of failure. Everything is scaled by 1/100, so that returns are of the order of one.
+value, whether the tree branches on it, and the bits that the best question about it tells of it, as a share of the most
+that its replies can tell. Action 0 commits: the safe plan that loses least on average is flown. Action i asks the best
+question about gap i. The reward is the negative of the cost axis of the benchmark: a question's price for each
+question, and in the end the seconds of flight, or the price of failure. Everything is scaled by 1/100, so that returns
+are of the order of one.
 """
 
 from __future__ import annotations
@@ -150,7 +151,8 @@ class ElicitationEnv(gymnasium.Env[Observation, np.int64]):
         question = put.question
         assert question is not None
         answer = self._operator.answer(question, self._world.mission.asking.patience_s)
-        self._line = f"{question.text} {answer.reply.value}"
+        said = question.query.part_words(answer.part) if answer.part is not None else answer.reply.value
+        self._line = f"{question.text} {said}"
         try:
             self._think(put.answered(answer))
         except InfeasibleError:
@@ -177,7 +179,7 @@ class ElicitationEnv(gymnasium.Env[Observation, np.int64]):
                 row[1] = belief.marginal(gap.id)[0]
                 row[2] = gap.id in branched
                 best = best_about(gap, self._thought.situation)
-                row[3] = min(1.0, best.gain_bits) if best is not None else 0.0
+                row[3] = best.gain_bits / np.log2(best.query.part_count) if best is not None else 0.0
         clipped: Observation = np.clip(seen, 0.0, 1.0)
         return clipped
 

@@ -9,7 +9,7 @@ from typing import Any
 
 import yaml
 
-from mintpilot.core.gap import ABSENT, BLOCKED, PASSABLE, PRESENT, Candidate, GapKind, KnowledgeGap
+from mintpilot.core.gap import ABSENT, BLOCKED, PASSABLE, PRESENT, Candidate, GapKind, KnowledgeGap, target_id
 from mintpilot.core.observation import Attribute
 from mintpilot.core.query import Literal, Query, Question, Saying, SayingKind
 from mintpilot.core.task import Action, Reference, SubGoal, Task
@@ -112,7 +112,7 @@ QUESTIONS: dict[str, Question] = {
     ),
     "box": asked(
         KnowledgeGap(
-            id="target:1:box", kind=GapKind.TARGET, subject="the box", description="the box",
+            id=target_id(1, "box"), kind=GapKind.TARGET, subject="the box", description="the box",
             values=tuple(c.id for c in _BOXES), prior=(0.25, 0.25, 0.5), position_m=(5.0, 2.0, 1.0), candidates=_BOXES,
         ),
         {"box-1"},

@@ -10,7 +10,17 @@ from statistics import mean, quantiles
 
 from mintpilot.benchmark.language_cases import AnswerCase, asked, box, instruction_cases, written
 from mintpilot.core.errors import InputError
-from mintpilot.core.gap import ABSENT, BLOCKED, PASSABLE, PRESENT, GapKind, KnowledgeGap
+from mintpilot.core.gap import (
+    ABSENT,
+    BLOCKED,
+    PASSABLE,
+    PRESENT,
+    GapKind,
+    KnowledgeGap,
+    obstacle_id,
+    presence_id,
+    target_id,
+)
 from mintpilot.core.ports import Completion, LanguageModel
 from mintpilot.core.query import Question, Saying, SayingKind
 from mintpilot.elicitation.wording import word_question
@@ -150,13 +160,13 @@ def _questions() -> Iterator[Question]:
     )
     rooms = "the closed room", "the closed room with the brown door", "the room in the far corner"
     for number, called in enumerate(clouds):
-        yield _about(f"obstacle:{number}", GapKind.OBSTACLE, called, (PASSABLE, BLOCKED))
+        yield _about(obstacle_id(str(number)), GapKind.OBSTACLE, called, (PASSABLE, BLOCKED))
     for number, called in enumerate(rooms):
-        yield _about(f"presence:{number}", GapKind.PRESENCE, called, (PRESENT, ABSENT))
+        yield _about(presence_id(str(number)), GapKind.PRESENCE, called, (PRESENT, ABSENT))
     looks = (("small", "red"), ("large", "blue"), ("small", "green"), ("large", "white"))
     boxes = tuple(box(f"box-{i}", size, colour) for i, (size, colour) in enumerate(looks))
     gap = KnowledgeGap(
-        id="target:1:box", kind=GapKind.TARGET, subject="the box", description="the box", candidates=boxes,
+        id=target_id(1, "box"), kind=GapKind.TARGET, subject="the box", description="the box", candidates=boxes,
         values=tuple(c.id for c in boxes), prior=(0.25,) * 4, position_m=(0.0, 0.0, 0.0),
     )  # fmt: skip
     for i, (_, colour) in enumerate(looks):

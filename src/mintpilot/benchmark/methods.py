@@ -2,17 +2,12 @@
 
 from __future__ import annotations
 
-import inspect
 from types import MappingProxyType
 from typing import Final
 
 from pydantic import BaseModel, ConfigDict
 
-from mintpilot.assembly.registry import load, names
-from mintpilot.core.errors import UnknownNameError
-from mintpilot.core.ports import Strategy
-
-Number = float | int
+from mintpilot.assembly.registry import load, names, unknown
 
 
 class Method(BaseModel):
@@ -50,16 +45,6 @@ def method_of(name: str) -> Method:
     if name in VARIANTS:
         return VARIANTS[name]
     if name not in names("strategy"):
-        raise UnknownNameError("strategy", name, (*names("strategy"), *VARIANTS))
+        raise unknown("strategy", name, (*names("strategy"), *VARIANTS))
     load("strategy", name)
     return Method(name=name, strategy=name)
-
-
-def make_strategy(method: Method, seed: int) -> Strategy:
-    """A fresh strategy for one trial. Those that take a ``seed`` get the trial's."""
-    kind = load("strategy", method.strategy)
-    arguments: dict[str, Number] = dict(method.arguments)
-    if "seed" in inspect.signature(kind).parameters:
-        arguments["seed"] = seed
-    made: Strategy = kind(**arguments)
-    return made

@@ -6,14 +6,16 @@ from rich import box
 from rich.console import Console
 from rich.table import Table
 
+from mintpilot.assembly.registry import present_name
 from mintpilot.benchmark.experiment import Experiment
 from mintpilot.benchmark.summary import Row, Summary
 
 PAPER = {
-    "table1": {"pure-llm": "77 %, 0.0", "exhaustive": "100 %, 2.0", "mint": "100 %, 1.4"},
+    "table1": {"passive-mixture": "Pure LLM: 77 %, 0.0", "exhaustive": "100 %, 2.0", "mint": "100 %, 1.4"},
     "boxes": {"passive-conservative": "35 %", "mint": "100 %, 20.7 s"},
 }
-"""What the paper states: success, mean questions; for the boxes seconds from start to completed trajectories."""
+"""What the paper states: success, mean questions; for the boxes seconds from start to completed trajectories. Its
+'Pure LLM' stands beside `passive-mixture`, which is no language model but draws between the two stances it may take."""
 ROOMY = 100
 """From this many columns on a terminal shows everything."""
 LEFT_OUT = ("n", "cost, mean s", "flight, mean s")
@@ -38,7 +40,7 @@ def print_summary(experiment: Experiment, summary: Summary, console: Console) ->
         for row in rows:
             seconds = row.latency_s.get("total")
             late = ((f"{seconds:.1f} s" if seconds is not None else "-"),) if timed else ()
-            words = (*row_words(row), *late, *((paper.get(row.strategy, ""),) if paper else ()))
+            words = (*row_words(row), *late, *((paper.get(present_name(row.strategy), ""),) if paper else ()))
             by_name = dict(zip(header, words, strict=True))
             table.add_row(*(by_name[name].replace(" [", "\n[").replace("%, ", "%,\n") for name in shown))
         console.print(table)

@@ -7,12 +7,13 @@ import traceback
 from dataclasses import replace
 
 from mintpilot.assembly.components import Choices, VehicleChoice, components_for, scripted_operator
+from mintpilot.assembly.strategies import make_strategy
 from mintpilot.assembly.talk import talk_for
 from mintpilot.assembly.worlds import World
 from mintpilot.benchmark.conditions import asking_for
 from mintpilot.benchmark.deadline import TrialTimeoutError, deadline
 from mintpilot.benchmark.experiment import Cell, Experiment
-from mintpilot.benchmark.methods import Method, make_strategy
+from mintpilot.benchmark.methods import Method
 from mintpilot.benchmark.records import TrialRecord
 from mintpilot.benchmark.shared_survey import SharedSurvey
 from mintpilot.benchmark.tally import Tally
@@ -133,7 +134,8 @@ class _Flight:
         operator = scripted_operator(world, person)
         talk = talk_for(LanguageSpec(), llm=experiment.llm)
         with components_for(world, choices, operators=(operator,), recorder=tally, talk=talk) as made:
-            parts = replace(made.parts, strategy=make_strategy(method, world.seed))
+            strategy = make_strategy(method.strategy, seed=world.seed, arguments=method.arguments)
+            parts = replace(made.parts, strategy=strategy)
             if planner is not None:
                 parts = replace(parts, planner=planner)
             named = replace(made, parts=parts, strategy_name=method.name)

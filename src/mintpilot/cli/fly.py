@@ -34,6 +34,8 @@ class FlightOptions:
     out: Path | None
     """The run folder; None: a new one under ``runs``."""
     as_json: bool
+    strategy_args: tuple[str, ...] = ()
+    """Each ``NAME=VALUE``."""
     llm: str | None = None
     """Language model by name; None: as the mission file says."""
     lang: str | None = None
@@ -43,12 +45,14 @@ class FlightOptions:
 def fly(path: Path, options: FlightOptions) -> ExitCode:
     """Flies the mission in that file, tells how it goes, and prints the report, or as JSON its summary."""
     from mintpilot.assembly.api import run_mission
+    from mintpilot.assembly.strategies import parse_arguments
     from mintpilot.cli.progress import LenientConsole, Narrator
     from mintpilot.mission_file.reader import read_mission
     from mintpilot.recording.run_folder import new_run_path
     from mintpilot.recording.run_summary import summary
     from mintpilot.recording.terminal_report import print_report
 
+    arguments = parse_arguments(options.strategy_args)
     mission = read_mission(path)
     errors = LenientConsole(stderr=True)
     out = options.out or new_run_path(Path("runs"), mission.name, datetime.now(UTC))
@@ -64,6 +68,7 @@ def fly(path: Path, options: FlightOptions) -> ExitCode:
                 operator=_operator(options.operator, errors, narrator),
                 vehicle=options.vehicle,
                 strategy=options.strategy,
+                strategy_arguments=arguments,
                 seed=options.seed,
                 out=out,
                 progress=tell,

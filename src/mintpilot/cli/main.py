@@ -28,6 +28,7 @@ app = App(
 Json: TypeAlias = Annotated[bool, Parameter(name="--json", negative="")]
 Flag: TypeAlias = Annotated[bool, Parameter(negative="")]
 Seed: TypeAlias = Annotated[int | None, Parameter(name="--seed")]
+StrategyArgs: TypeAlias = Annotated[list[str] | None, Parameter(name="--strategy-arg", negative="")]
 Llm: TypeAlias = Annotated[str | None, Parameter(name="--llm")]
 Lang: TypeAlias = Annotated[str | None, Parameter(name="--lang")]
 OperatorName: TypeAlias = Literal["terminal", "scripted"]
@@ -95,6 +96,7 @@ def demo(
     help_epilogue=examples(
         "mintpilot run examples/medicine.yaml",
         "mintpilot run examples/medicine.yaml --vehicle kinematic --seed 7 --json",
+        "mintpilot run examples/medicine.yaml --strategy knowno --strategy-arg quantile=0.8",
     )
 )
 def run(
@@ -104,6 +106,7 @@ def run(
     operator: OperatorName | None = None,
     vehicle: VehicleName = "mujoco",
     strategy: str = "mint",
+    strategy_arg: StrategyArgs = None,
     seed: Seed = None,
     llm: Llm = None,
     lang: Lang = None,
@@ -119,6 +122,7 @@ def run(
             terminal.
         vehicle: Physics and camera, or a fast point mass.
         strategy: How it decides what to ask.
+        strategy_arg: NAME=VALUE, an argument of the strategy; may be given several times. Overrides that of the file.
         seed: Of everything that is drawn at random; overrides the one in the file.
         llm: Language model for words: template (none), endpoint, embedded, or a plug-in's. Default: as the file says.
         lang: Language of the questions: en, de, fr or es. Default: as the file says.
@@ -133,6 +137,7 @@ def run(
         operator=operator,
         vehicle=vehicle,
         strategy=strategy,
+        strategy_args=tuple(strategy_arg or ()),
         seed=seed,
         out=out,
         as_json=json,
@@ -153,6 +158,7 @@ def plan(
     /,
     *,
     strategy: str = "mint",
+    strategy_arg: StrategyArgs = None,
     seed: Seed = None,
     llm: Llm = None,
     lang: Lang = None,
@@ -166,6 +172,7 @@ def plan(
     Args:
         mission: The mission file (YAML).
         strategy: How it decides what to ask.
+        strategy_arg: NAME=VALUE, an argument of the strategy; may be given several times. Overrides that of the file.
         seed: Of everything that is drawn at random; overrides the one in the file.
         llm: Language model for words: template (none), endpoint, embedded, or a plug-in's. Default: as the file says.
         lang: Language of the questions: en, de, fr or es. Default: as the file says.
@@ -175,7 +182,15 @@ def plan(
     from mintpilot.cli.think import think
 
     return guarded(
-        lambda: think(mission, strategy=strategy, seed=seed, llm=llm, lang=lang, as_json=json),
+        lambda: think(
+            mission,
+            strategy=strategy,
+            strategy_args=strategy_arg or (),
+            seed=seed,
+            llm=llm,
+            lang=lang,
+            as_json=json,
+        ),
         as_json=json,
         debug=debug,
     )

@@ -151,7 +151,7 @@ def told(event: Event) -> tuple[str, str]:
         worth = f"the best question is worth {event.chosen.gain_bits:.2f} bits"
         return f"Thought {event.seconds:.2f} s about {_count(len(event.gaps), 'knowledge gap')}: {worth}.", ""
     if isinstance(event, Asked):
-        return f"Asked: {event.question.text} Answer: {event.answer.reply.value}.", "thinking"
+        return f"Asked: {event.question.text} Answer: {_said(event)}.", "thinking"
     if isinstance(event, PlanChosen):
         if event.plan is None:
             return "No plan that is known to be safe.", "staying safe"
@@ -171,3 +171,9 @@ def told(event: Event) -> tuple[str, str]:
 
 def _count(number: int, noun: str) -> str:
     return f"{number} {noun}{'' if number == 1 else 's'}"
+
+
+def _said(event: Asked) -> str:
+    """The reply in a word or two."""
+    part = event.answer.part
+    return event.answer.reply.value if part is None else event.question.query.part_words(part)

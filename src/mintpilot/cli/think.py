@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -12,11 +12,22 @@ if TYPE_CHECKING:
     from mintpilot.assembly.deliberation_report import DeliberationReport, GapReport
 
 
-def think(path: Path, *, strategy: str, seed: int | None, llm: str | None, lang: str | None, as_json: bool) -> ExitCode:
+def think(
+    path: Path,
+    *,
+    strategy: str,
+    strategy_args: Iterable[str],
+    seed: int | None,
+    llm: str | None,
+    lang: str | None,
+    as_json: bool,
+) -> ExitCode:
     """Deliberates on the mission in that file and prints what came of it."""
     from mintpilot.assembly.api import plan_mission
+    from mintpilot.assembly.strategies import parse_arguments
 
-    report = plan_mission(path, strategy=strategy, seed=seed, llm=llm, lang=lang)
+    arguments = parse_arguments(strategy_args)
+    report = plan_mission(path, strategy=strategy, strategy_arguments=arguments, seed=seed, llm=llm, lang=lang)
     print(report.model_dump_json() if as_json else "\n".join(lines_of(report)))
     return ExitCode.SUCCESS
 
@@ -57,8 +68,11 @@ def _decision_lines(report: DeliberationReport) -> Iterator[str]:
         return
     query = report.query
     yield f"It would ask: {query.text}"
-    yield f"  yes: {query.yes_means}"
-    yield f"  no:  {query.no_means}"
+    if query.option_means:
+        yield from (f"  {reply}: {means}" for reply, means in zip(query.replies, query.option_means, strict=True))
+    else:
+        yield f"  yes: {query.yes_means}"
+        yield f"  no:  {query.no_means}"
     yield f"  worth {query.gain_bits:.2f} bits and {query.regret_saved_s:.1f} s of flight"
 
 

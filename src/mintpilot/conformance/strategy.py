@@ -13,7 +13,7 @@ from mintpilot.conformance.sample import require, sample_world
 from mintpilot.core.gap import GapKind, KnowledgeGap
 from mintpilot.core.mission import AskingSettings
 from mintpilot.core.ports import Fly, QueryObjective, QuerySituation, Strategy
-from mintpilot.core.query import Answer, Query, Reply
+from mintpilot.core.query import Answer, Query, Reply, answer_for
 from mintpilot.mission.deliberation import Deliberation, DeliberationParts
 from mintpilot.mission.rehearsal import Rehearsal, begin
 
@@ -43,7 +43,7 @@ def check_strategy(make: Callable[[], Strategy]) -> None:
 
 
 def check_objective(make: Callable[[], QueryObjective]) -> None:
-    """One number for each cut, the same each time, and nothing for a cut that tells nothing of the plan.
+    """One number for each query, the same each time, and nothing for a query that tells nothing of the plan.
 
     Args:
         make: makes a fresh objective; called more than once.
@@ -53,33 +53,44 @@ def check_objective(make: Callable[[], QueryObjective]) -> None:
     """
     probability = np.array([0.25, 0.25, 0.2, 0.15, 0.1, 0.05])
     class_of = np.array([0, 0, 1, 1, 2, 2])
-    cuts = np.array([[1, 1, 0, 0, 0, 0], [1, 0, 1, 0, 1, 0], [0, 0, 1, 1, 0, 0], [1, 1, 1, 1, 1, 1], [0] * 6], bool)
+    parts = np.array(
+        [[0, 0, 1, 1, 1, 1], [0, 1, 0, 1, 0, 1], [1, 1, 0, 0, 1, 1], [0] * 6, [1] * 6, [0, 0, 1, 1, 2, 2], [2] * 6],
+        np.int8,
+    )
+    part_count = np.array([2, 2, 2, 2, 2, 3, 3])
     regret = np.where(class_of[None, :] == np.arange(3)[:, None], 0.0, 20.0)
     situation = QuerySituation(
-        probability=probability, class_of=class_of, regret_s=regret, yes=cuts, settings=AskingSettings()
+        probability=probability,
+        class_of=class_of,
+        regret_s=regret,
+        parts=parts,
+        part_count=part_count,
+        settings=AskingSettings(),
     )
     objective = make()
     scores = objective.scores(situation)
-    rule = f"scores of shape {scores.shape} for {len(cuts)} cuts; one number for each it must be"
-    require(scores.shape == (len(cuts),), objective, rule)
+    rule = f"scores of shape {scores.shape} for {len(parts)} queries; one number for each it must be"
+    require(scores.shape == (len(parts),), objective, rule)
     require(bool(np.isfinite(scores).all()), objective, f"scores {scores.tolist()} are not all finite")
     again = make().scores(situation)
     require(
         np.array_equal(scores, again), objective, f"a fresh one gives {again.tolist()} instead of {scores.tolist()}"
     )
-    for index, what in ((3, "yes"), (4, "no")):
-        rule = f"a cut that is always answered {what} scores {scores[index]:g}; what tells nothing scores 0 or less"
+    for index, what in ((3, "yes"), (4, "no"), (6, "by its third option")):
+        rule = f"a query that is always answered {what} scores {scores[index]:g}; what tells nothing scores 0 or less"
         require(scores[index] <= 1e-9, objective, rule)
-    require(float(scores[0]) > 0, objective, f"the cut that settles a plan scores {scores[0]:g}; above 0 it must be")
+    require(float(scores[0]) > 0, objective, f"the query that settles a plan scores {scores[0]:g}; above 0 it must be")
+    require(float(scores[5]) > 0, objective, f"the choice among the plans scores {scores[5]:g}; above 0 it must be")
     settled = QuerySituation(
         probability=np.array([0.5, 0.5]),
         class_of=np.array([0, 0]),
         regret_s=np.zeros((1, 2)),
-        yes=np.array([[True, False]]),
+        parts=np.array([[0, 1]], np.int8),
+        part_count=np.array([2]),
         settings=AskingSettings(),
     )
     left = float(make().scores(settled)[0])
-    require(left <= 1e-9, objective, f"one plan is left, yet a cut still scores {left:g}; 0 or less it must be")
+    require(left <= 1e-9, objective, f"one plan is left, yet a query still scores {left:g}; 0 or less it must be")
 
 
 def _truths(gaps: tuple[KnowledgeGap, ...]) -> Iterator[Mapping[str, str]]:
@@ -98,8 +109,7 @@ def _play(strategy: Strategy, truth: Mapping[str, str], settings: AskingSettings
         require(asked < _BUDGET, strategy, f"it asks on after {asked} questions, the whole budget")
         query = found.decision.scored.query
         _check_query(query, found, strategy)
-        reply = Reply.YES if query.holds(truth) else Reply.NO
-        moment = moment.asked(found).answered(Answer(reply=reply, latency_s=0.0))
+        moment = moment.asked(found).answered(answer_for(query, query.part_of(truth)))
         yield query.id
 
 
@@ -107,7 +117,7 @@ def _check_query(query: Query, found: Deliberation, strategy: Strategy) -> None:
     open_gaps = {gap.id for gap in found.findings.gaps}
     closed = sorted(set(query.gap_ids) - open_gaps)
     require(not closed, strategy, f"it asks about {closed}, which are no open gaps ({sorted(open_gaps)})")
-    repeated = query.id in {earlier.id for earlier, _ in found.state.asked}
+    repeated = query.id in {earlier.query.id for earlier in found.state.asked}
     require(not repeated, strategy, f"it asks '{query.id}' again, though the answer is known")
 
 

@@ -11,7 +11,7 @@ from mintpilot.core.plan import Plan
 from mintpilot.core.query import Question
 from mintpilot.core.semantic_map import Knowledge
 from mintpilot.core.trajectory import Trajectory
-from mintpilot.core.tree import Certificate, GapAccount, Mint, ScoredQuery
+from mintpilot.core.tree import Certificate, GapExplanation, Mint, ScoredQuery
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -30,7 +30,7 @@ class Reasoning:
     """The tree; None for strategies that build none."""
     cautious: Plan | None = None
     """The best plan that succeeds whatever holds, checked against the map: flown when reasoning is not to be had."""
-    explanations: tuple[GapAccount, ...] = ()
+    explanations: tuple[GapExplanation, ...] = ()
     """Of the gaps that had not been explained before, at what they are worth now."""
     proposed: tuple[ScoredQuery, ...] = ()
     """Queries that a language model proposed and that were sound, scored, best first."""

@@ -46,12 +46,12 @@ class MapError(InputError):
 
 
 class UnknownNameError(InputError):
-    """A name that nobody registered."""
+    """A name that nobody registered; ``now`` is what a former name was changed to."""
 
-    def __init__(self, kind: str, name: str, known: Iterable[str]) -> None:
+    def __init__(self, kind: str, name: str, known: Iterable[str], *, now: str = "") -> None:
         names = sorted(known)
         near = difflib.get_close_matches(name, names, n=1, cutoff=0.4)
-        hint = f" Did you mean '{near[0]}'?" if near else ""
+        hint = f" It is called '{now}' now." if now else f" Did you mean '{near[0]}'?" if near else ""
         super().__init__(f"unknown {kind} '{name}'.{hint} Known: {', '.join(names) or '(none)'}.")
 
 

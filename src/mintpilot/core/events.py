@@ -14,7 +14,7 @@ from mintpilot.core.query import Answer, Order, Question
 from mintpilot.core.semantic_map import SemanticMap
 from mintpilot.core.task import Task
 from mintpilot.core.trajectory import FlightLog, Trajectory
-from mintpilot.core.tree import Certificate, GapAccount, Mint, ScoredQuery
+from mintpilot.core.tree import Certificate, GapExplanation, Mint, ScoredQuery
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -66,13 +66,13 @@ class Deliberated:
     """None for strategies that build no tree."""
     chosen: ScoredQuery | None
     alternatives: tuple[ScoredQuery, ...]
-    """The best few of the other cuts."""
+    """The best few of the other queries."""
     certificate: Certificate | None
     seconds: float
     proposed: tuple[ScoredQuery, ...] = ()
-    """Cuts that a language model proposed and that were sound, scored, best first."""
+    """Queries that a language model proposed and that were sound, scored, best first."""
     bound_bits: float | None = None
-    """No cut whatever could have told more than this; None: not worked out."""
+    """No query of that kind could have a higher gain than this; None: not worked out."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -84,20 +84,20 @@ class Asked:
     scored: ScoredQuery
     answer: Answer
     wording_s: float
-    """From the cut to the first words, seconds."""
+    """From the choice of the query to the first words, seconds."""
     first_text: str = ""
     """The words that were there first, where better ones followed; else empty."""
     better_s: float | None = None
-    """From the cut to the better words, seconds; None: the person had the first words only."""
+    """From the choice of the query to the better words, seconds; None: the person had the first words only."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class PlanChosen:
-    """What will be flown, and the account of every gap."""
+    """What will be flown, and the explanation of every gap."""
 
     plan: Plan | None
     certificate: Certificate
-    accounts: tuple[GapAccount, ...]
+    explanations: tuple[GapExplanation, ...]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -12,6 +12,7 @@ import numpy as np
 from mintpilot.core.errors import MissionError
 from mintpilot.core.geometry import Floats, Vec3, frozen
 from mintpilot.core.observation import Attribute
+from mintpilot.core.tolerances import SUM_TOLERANCE
 
 PASSABLE = "passable"
 BLOCKED = "blocked"
@@ -30,6 +31,42 @@ class GapKind(StrEnum):
     """Is somebody in this place? Values: `PRESENT`, `ABSENT`."""
     VALUE = "value"
     """An ordered quantity. Values: numbers in ascending order, as text."""
+
+
+_SEPARATOR = ":"
+
+
+def obstacle_id(region: str) -> str:
+    """Id of the gap that asks whether that region is passable."""
+    return f"{GapKind.OBSTACLE}{_SEPARATOR}{region}"
+
+
+def presence_id(room: str) -> str:
+    """Id of the gap that asks whether somebody is in that room."""
+    return f"{GapKind.PRESENCE}{_SEPARATOR}{room}"
+
+
+def target_id(number: int, phrase: str) -> str:
+    """Id of the gap that asks which object a phrase means.
+
+    Args:
+        number: of the step of the task that has the phrase, from 1.
+        phrase: in letters, digits and hyphens: ``red-box``.
+    """
+    return f"{GapKind.TARGET}{_SEPARATOR}{number}{_SEPARATOR}{phrase}"
+
+
+def kind_of(gap_id: str) -> GapKind | None:
+    """The kind of gap that an id names; None for what is no gap id."""
+    head, separator, _ = gap_id.partition(_SEPARATOR)
+    return GapKind(head) if separator and head in set(GapKind) else None
+
+
+def region_of(gap_id: str) -> str:
+    """The region that an obstacle gap asks about. Raises `MissionError` for another id."""
+    if kind_of(gap_id) is not GapKind.OBSTACLE:
+        raise MissionError(f"gap '{gap_id}' is about no region: ids of such gaps look like '{obstacle_id('smoke-1')}'")
+    return gap_id.partition(_SEPARATOR)[2]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -69,7 +106,7 @@ class KnowledgeGap:
             raise MissionError(f"gap '{self.id}': values {self.values} must be one or more, none twice")
         if len(self.prior) != len(self.values):
             raise MissionError(f"gap '{self.id}': {len(self.prior)} probabilities for {len(self.values)} values")
-        if any(not 0 <= p <= 1 for p in self.prior) or not math.isclose(sum(self.prior), 1, abs_tol=1e-6):
+        if any(not 0 <= p <= 1 for p in self.prior) or not math.isclose(sum(self.prior), 1, abs_tol=SUM_TOLERANCE):
             raise MissionError(f"gap '{self.id}': prior {self.prior} must be from 0 to 1 each and sum to 1")
         if self.candidates and tuple(c.id for c in self.candidates) != self.values:
             raise MissionError(f"gap '{self.id}': the candidates' ids must be its values, in order")

@@ -12,6 +12,7 @@ from mintpilot.core.errors import MapError
 
 Floats: TypeAlias = NDArray[np.float64]
 Ints: TypeAlias = NDArray[np.int64]
+SmallInts: TypeAlias = NDArray[np.int8]
 Bools: TypeAlias = NDArray[np.bool_]
 Vec3: TypeAlias = tuple[float, float, float]
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from enum import StrEnum
+from typing import Any
 
 from mintpilot.core.errors import MissionError
 from mintpilot.core.geometry import Box, Vec3
@@ -20,64 +21,87 @@ class CriticalityRule(StrEnum):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class AskingSettings:
-    """Thresholds and bounds of reasoning and asking, in the symbols of the method."""
+class Bounds:
+    """What a setting is, and between which limits."""
 
-    rule: CriticalityRule = CriticalityRule.REGRET
-    delta_c_s: float = 2.0
-    """Cost difference that is worth a question [delta_c], seconds."""
-    delta_d_m: float = 2.0
-    """Divergence that is worth a question under the paper's rule [delta_d], metres."""
-    goal_entropy_bits: float = 0.3
-    """A target gap with more entropy than this is critical."""
-    alpha: float = 0.05
-    """Stop asking when one plan class holds at least ``1 - alpha``."""
-    alpha_safe: float = 0.01
-    """A region counts as passable from a posterior of ``1 - alpha_safe`` on, after an explicit yes."""
-    answer_error: float = 0.0
-    """Probability that an answer is the opposite of the truth [e]."""
-    floor: float = 1e-6
-    """Joint hypotheses below this probability are not planned for."""
-    question_price_s: float = 0.0
-    """What a question costs the person, in seconds of flight; only objectives that weigh it use it."""
-    failure_price_s: float = 600.0
-    """What a failed mission counts for, in seconds of flight, where expected losses are weighed."""
-    max_questions: int = 20
-    """Budget of questions."""
-    patience_s: float = 30.0
-    """How long an answer is waited for, seconds."""
-    objective: str = "information-gain"
-    """Name of the query objective."""
-    max_nodes: int = 4096
-    """Bound on the tree's nodes; what lies beyond gets the cautious plan."""
-    max_joint: int = 65536
-    """Bound on joint hypotheses held in the belief; gaps beyond it count at their cautious value."""
-    impact_metric: str = "frechet"
-    """Name of the distance between paths."""
+    meaning: str
+    """One sentence, with the unit; it stands in the mission file's schema."""
+    least: float | None = None
+    """Smallest value allowed."""
+    below: float | None = None
+    """The value must be below this."""
+    why: str = ""
+    """Why, where that is not plain."""
+
+    def check(self, name: str, value: float) -> None:
+        """Raises `MissionError` where the value of that setting is out of bounds."""
+        if (self.least is None or value >= self.least) and (self.below is None or value < self.below):
+            return
+        if self.below is not None:
+            rule = f"must be at least {self.least:g} and below {self.below:g}"
+        else:
+            rule = "must not be below 0" if self.least == 0 else f"must be at least {self.least:g}"
+        raise MissionError(f"asking {name} = {value}: {rule}{f'; {self.why}' if self.why else ''}")
+
+
+def setting(
+    default: Any, meaning: str, *, least: float | None = None, below: float | None = None, why: str = ""
+) -> Any:
+    """A field of `AskingSettings`: the schema of mission files is made of these."""
+    bounds = Bounds(meaning=meaning, least=least, below=below, why=why)
+    return field(default=default, metadata={"bounds": bounds})
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AskingSettings:
+    """Thresholds and bounds of reasoning and asking, in the symbols of the method.
+
+    The schema of mission files is made of these fields: names, types, defaults, bounds and sentences stand here only.
+
+    Raises:
+        MissionError: a value is out of its bounds.
+    """
+
+    rule: CriticalityRule = setting(  # noqa: RUF009  (a field, with its words)
+        CriticalityRule.REGRET,
+        "Which differences make a gap critical: cost or divergence (`paper`), or cost alone (`regret`).",
+    )
+    delta_c_s: float = setting(2.0, "Cost difference that is worth a question, seconds.", least=0)
+    delta_d_m: float = setting(2.0, "Divergence that is worth a question under the paper's rule, metres.", least=0)
+    goal_entropy_bits: float = setting(0.3, "A target gap with more entropy than this is critical, bits.", least=0)
+    alpha: float = setting(0.05, "Stop asking when one plan class holds at least 1 - alpha.", least=0, below=1)
+    alpha_safe: float = setting(
+        0.01,
+        "A region counts as passable from a posterior of 1 - alpha_safe on, after an explicit yes.",
+        least=0,
+        below=1,
+    )
+    answer_error: float = setting(
+        0.0,
+        "Probability that an answer is the opposite of the truth, as the drone believes.",
+        least=0,
+        below=0.5,
+        why="answers that are wrong half the time tell nothing",
+    )
+    floor: float = setting(1e-6, "Joint hypotheses below this probability are not planned for.", least=0, below=1)
+    question_price_s: float = setting(0.0, "What a question costs the person, in seconds of flight.", least=0)
+    failure_price_s: float = setting(
+        600.0,
+        "What a failed mission counts for, in seconds of flight, where expected losses are weighed.",
+        least=0,
+    )
+    max_questions: int = setting(20, "Budget of questions.", least=0)
+    patience_s: float = setting(30.0, "How long an answer is waited for, seconds.", least=0)
+    objective: str = setting("information-gain", "Name of the query objective.")
+    max_nodes: int = setting(4096, "Bound on the tree's nodes.", least=1)
+    max_joint: int = setting(65536, "Bound on the joint hypotheses held.", least=1)
+    impact_metric: str = setting("frechet", "Name of the distance between paths.")
 
     def __post_init__(self) -> None:
-        for name in ("alpha", "alpha_safe", "floor"):
-            if not 0 <= getattr(self, name) < 1:
-                raise MissionError(f"asking {name} = {getattr(self, name)}: must be at least 0 and below 1")
-        if not 0 <= self.answer_error < 0.5:
-            raise MissionError(
-                f"asking answer_error = {self.answer_error}: must be at least 0 and below 0.5; "
-                "answers that are wrong half the time tell nothing"
-            )
-        for name in (
-            "delta_c_s",
-            "delta_d_m",
-            "goal_entropy_bits",
-            "question_price_s",
-            "failure_price_s",
-            "patience_s",
-            "max_questions",
-        ):
-            if not getattr(self, name) >= 0:
-                raise MissionError(f"asking {name} = {getattr(self, name)}: must not be below 0")
-        for name in ("max_nodes", "max_joint"):
-            if getattr(self, name) < 1:
-                raise MissionError(f"asking {name} = {getattr(self, name)}: must be at least 1")
+        for one in fields(self):
+            bounds: Bounds = one.metadata["bounds"]
+            if bounds.least is not None:
+                bounds.check(one.name, getattr(self, one.name))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -11,13 +11,13 @@ from typing import Protocol, TypeAlias
 
 from mintpilot.core.events import Event
 from mintpilot.core.gap import Assumptions, Belief, KnowledgeGap
-from mintpilot.core.geometry import Bools, Floats, Ints
+from mintpilot.core.geometry import Floats, Ints, SmallInts
 from mintpilot.core.inputs import MotionEnded, OperatorInput
 from mintpilot.core.mission import AskingSettings, Verdict
 from mintpilot.core.motion import Motion
 from mintpilot.core.observation import Detection, Frame
 from mintpilot.core.plan import Plan, PlanningProblem
-from mintpilot.core.query import Meaning, Query, Question
+from mintpilot.core.query import Evidence, Meaning, Query, Question
 from mintpilot.core.trajectory import VehicleState
 from mintpilot.core.tree import Certificate, Mint, ScoredQuery
 
@@ -89,13 +89,15 @@ class QuerySituation:
     regret_s: Floats
     """(p, n) seconds lost by flying plan i under hypothesis j instead of the best; the price of failure where it would
     fail. First the plans of the classes, then other safe plans; of very large trees only the likeliest classes'."""
-    yes: Bools
-    """(q, n) the true answer to each candidate cut."""
+    parts: SmallInts
+    """(q, n) the part of each candidate query that holds each joint hypothesis: the true answer."""
+    part_count: Ints
+    """(q,) the number of parts of each query, 2 to `mintpilot.core.query.MAX_PARTS`."""
     settings: AskingSettings
 
 
 class QueryObjective(Protocol):
-    """The worth of candidate cuts (method, section 4). Called once per question."""
+    """The worth of candidate queries (method, section 4). Called once per question."""
 
     def scores(self, situation: QuerySituation) -> Floats:
         """Worth of each candidate (q,); higher is better; 0 or less: not worth asking.
@@ -107,15 +109,15 @@ class QueryObjective(Protocol):
 
 
 class Proposer(Protocol):
-    """Proposes cuts, e.g. a language model. What it proposes is checked, and scored like any cut."""
+    """Proposes queries, e.g. a language model. What it proposes is checked, and scored like any query."""
 
     @property
     def name(self) -> str:
-        """For the record: who proposed a cut."""
+        """For the record: who proposed a query."""
         ...
 
     def propose(self, mint: Mint) -> tuple[Query, ...]:
-        """Cuts over gaps that the tree branches on, in bounded time; none where it fails. Never raises."""
+        """Queries over gaps that the tree branches on, in bounded time; none where it fails. Never raises."""
         ...
 
 
@@ -131,28 +133,28 @@ class Situation:
     """Ids of obstacle gaps that got an explicit yes."""
     withdrawn: frozenset[str]
     """Ids of queries answered UNSURE: not to be asked again."""
-    asked: tuple[tuple[Query, bool], ...]
-    """Cuts that were answered, with the answer, oldest first."""
+    asked: tuple[Evidence, ...]
+    """Queries that were answered, with the answer, oldest first."""
     silent: bool
     """True after a time-out: no more questions."""
     settings: AskingSettings
     metric: ImpactMetric
     objective: QueryObjective
     proposer: Proposer | None = None
-    """Whom a strategy may ask for cuts that it does not find by itself; None: nobody."""
+    """Whom a strategy may ask for queries that it does not find by itself; None: nobody."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Ask:
-    """Put this cut to the operator."""
+    """Put this query to the operator."""
 
     scored: ScoredQuery
     alternatives: tuple[ScoredQuery, ...] = ()
     mint: Mint | None = None
     proposed: tuple[ScoredQuery, ...] = ()
-    """Cuts that a `Proposer` proposed and that were sound, scored, best first."""
+    """Queries that a `Proposer` proposed and that were sound, scored, best first."""
     bound_bits: float | None = None
-    """No cut whatever could tell more of the plan class than this; None: not worked out."""
+    """No query of its kind could have a higher gain than this; None: not worked out."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -166,6 +168,8 @@ class Fly:
     """True only for baselines that fly through what is not known passable; refused outside a simulator."""
     proposed: tuple[ScoredQuery, ...] = ()
     """As in `Ask`, where proposals were looked at and none was worth asking."""
+    notices: tuple[str, ...] = ()
+    """What the person should know of how this was decided, e.g. which bound on the work was met, in plain sentences."""
 
 
 Decision: TypeAlias = Ask | Fly

@@ -10,7 +10,7 @@ import numpy as np
 from mintpilot.core.gap import Assumptions, Joint
 from mintpilot.core.geometry import Ints, frozen
 from mintpilot.core.plan import Plan
-from mintpilot.core.query import Query
+from mintpilot.core.query import YES_PART, Query
 
 
 class LeafReason(StrEnum):
@@ -77,7 +77,7 @@ class Mint:
     nodes: int
     """Number of nodes."""
     not_expanded: int = 0
-    """Leaves that the bound on nodes cut off."""
+    """Leaves that the bound on nodes left unexpanded."""
 
     def __post_init__(self) -> None:
         frozen(self.class_of)
@@ -91,7 +91,7 @@ class Mint:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ScoredQuery:
-    """A candidate cut with its worth."""
+    """A candidate query with its worth."""
 
     query: Query
     score: float
@@ -100,9 +100,15 @@ class ScoredQuery:
     """Mutual information of the answer and the plan class, bits."""
     regret_saved_s: float
     """Expected seconds of regret that the answer saves."""
-    yes_probability: float
+    reply_probabilities: tuple[float, ...]
+    """With which each part of the query will be named in answer, wrong answers included; they sum to one."""
     proposed_by: str = "enumeration"
     """Who proposed it: the enumeration, or a language model by name."""
+
+    @property
+    def yes_probability(self) -> float:
+        """Of a yes/no query: with which probability the answer will be yes."""
+        return self.reply_probabilities[YES_PART]
 
 
 class StopReason(StrEnum):
@@ -115,7 +121,7 @@ class StopReason(StrEnum):
     GOOD_FOR_ALL = "good-for-all"
     """A plan succeeds within delta_c of the best under every joint hypothesis above the floor."""
     NO_GAIN = "no-gain"
-    """No cut that is left tells anything of the plan, or none is worth its price."""
+    """No query that is left has a gain on the plan, or none is worth its price."""
     BUDGET = "budget"
     """The number of questions allowed is spent."""
     SILENCE = "silence"
@@ -124,6 +130,8 @@ class StopReason(StrEnum):
     """No plan exists under any hypothesis that is left."""
     NEVER_ASKS = "never-asks"
     """The strategy does not ask."""
+    LIMIT = "limit"
+    """A bound on the work was met: the cautious plan is flown."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -136,7 +144,7 @@ class Certificate:
     entropy_bits: float
     """Of the plan-class distribution."""
     best_gain_bits: float
-    """Of the best cut that was left."""
+    """Of the best query that was left."""
     bound_s: float
     """Largest cost of the chosen plan above the best one, over the hypotheses still above the floor, seconds; infinite
     where the chosen plan may fail or nothing is flown though something might have been."""
@@ -145,7 +153,7 @@ class Certificate:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class GapAccount:
+class GapExplanation:
     """For one gap: asked or not, and why, in figures."""
 
     gap_id: str
@@ -169,6 +177,6 @@ class GapAccount:
     entropy_bits: float = 0.0
     """Of the gap's own belief."""
     gain_bits: float = 0.0
-    """Of the best single-gap cut about it, at the time of the first deliberation."""
+    """Of the best query about it alone, at the time of the first deliberation."""
     regret_saved_s: float = 0.0
     """Expected seconds that knowing it saves, at the time of the first deliberation."""

@@ -1,1 +1,1 @@
-"""The tree into the best cut, and its words."""
+"""The tree into the best query, and its words."""

@@ -1,7 +1,7 @@
-"""Which cuts can be asked: a typed predicate language over the gaps that matter (method, section 4).
+"""Which queries can be asked: a typed predicate language over the gaps that matter (method, section 4).
 
-Every cut can be said in one short sentence and is about gaps that the tree branches on. Cuts that divide the joint
-hypotheses alike are merged; the one that is easiest to say stays.
+Every query can be said in one short sentence and is about gaps that the tree branches on. Of queries that divide the
+joint hypotheses alike only the one of least phrasing cost stays.
 """
 
 from __future__ import annotations
@@ -14,21 +14,22 @@ from itertools import combinations
 import numpy as np
 
 from mintpilot.core.gap import PASSABLE, PRESENT, GapKind, Joint, KnowledgeGap
-from mintpilot.core.geometry import Bools, Vec3, frozen
+from mintpilot.core.geometry import Bools, SmallInts, Vec3, frozen
 from mintpilot.core.query import Combine, Literal, Query, Saying, SayingKind
 from mintpilot.core.tree import Mint
+from mintpilot.elicitation.partitions import partition_keys
 from mintpilot.elicitation.phrasing_cost import phrasing_cost
 from mintpilot.elicitation.referents import referent_literals
 from mintpilot.elicitation.sentences import is_sayable
 
 MAX_TOGETHER = 3
-"""Most gaps in one any-of or all-of cut."""
-MAX_CUTS = 1000
-"""Bound on the cuts that are looked at, easiest first."""
+"""Most gaps in one any-of or all-of query."""
+MAX_QUERIES = 1000
+"""Bound on the queries that are looked at, those of least phrasing cost first."""
 MAX_KEPT = 1 << 20
-"""Tables of answers with more cells than this are made anew each time."""
+"""Tables of parts with more cells than this are made anew each time."""
 MAX_CELLS = 1 << 21
-"""Bound on cuts times joint hypotheses."""
+"""Bound on queries times joint hypotheses."""
 
 
 def gap_literals(gap: KnowledgeGap, start_m: Vec3 | None = None) -> tuple[Literal, ...]:
@@ -60,40 +61,39 @@ def candidate_queries(
     start_m: Vec3 | None = None,
     refused: Collection[str] = (),
 ) -> tuple[Query, ...]:
-    """The cuts that divide what the tree holds, easiest to say first, then by id.
+    """The queries that divide what the tree holds, those of least phrasing cost first, then by id.
 
     Args:
         mint: the tree; only gaps that it branches on are asked about.
         start_m: where the drone is, metres.
-        refused: ids of cuts not to be asked; nor are others that divide the hypotheses alike.
+        refused: ids of queries not to be asked; nor are others that divide the hypotheses alike.
     """
     support, language = mint.support, _language(mint.belief.gaps, start_m)
-    most = max(1, min(MAX_CUTS, MAX_CELLS // max(1, support.size)))
+    most = max(1, min(MAX_QUERIES, MAX_CELLS // max(1, support.size)))
     looked_at = language.queries[: 2 * most]
-    rows: Bools = language.truths(mint.belief, len(looked_at))[:, support]
-    # A cut and its opposite divide alike; of those that divide alike the first one is the easiest.
-    keys = np.packbits(rows ^ rows[:, :1], axis=1)
+    rows = language.parts(mint.belief, len(looked_at))[:, support]
+    # Of those that divide alike the first one has the least phrasing cost.
+    keys = partition_keys(rows)
     _, first, key_of = np.unique(keys, axis=0, return_index=True, return_inverse=True)
     barred = {key_of.ravel()[i] for i, query in enumerate(looked_at) if refused and query.id in refused}
-    held = np.count_nonzero(rows, axis=1)
-    telling = (held > 0) & (held < support.size)
-    kept = sorted(i for key, i in enumerate(first.tolist()) if telling[i] and key not in barred)
+    divides: Bools = np.any(keys, axis=1)
+    kept = sorted(i for key, i in enumerate(first.tolist()) if divides[i] and key not in barred)
     return tuple(looked_at[i] for i in kept[:most])
 
 
 @dataclass(frozen=True, eq=False)
 class _Language:
-    """Every cut that can be said about some gaps, easiest first, and their answers where that is a small table."""
+    """Every query that can be asked about some gaps, by phrasing cost, and their parts where that is a small table."""
 
     queries: tuple[Query, ...]
-    tables: dict[int, Bools]
+    tables: dict[int, SmallInts]
 
-    def truths(self, joint: Joint, count: int) -> Bools:
-        """True answers to the first cuts (count, n) under each joint hypothesis, flattened."""
+    def parts(self, joint: Joint, count: int) -> SmallInts:
+        """Parts of the first queries (count, n) that hold each joint hypothesis, flattened."""
         if count not in self.tables:
-            table: Bools = np.zeros((count, joint.probability.size), bool)
+            table: SmallInts = np.zeros((count, joint.probability.size), np.int8)
             for row, query in zip(table, self.queries, strict=False):
-                row[:] = query.truths(joint).ravel()
+                row[:] = query.part_table(joint).ravel()
             if table.size > MAX_KEPT:
                 return table
             frozen(table)

@@ -1,4 +1,4 @@
-"""Choosing the best cut (method, section 4)."""
+"""Choosing the best query (method, section 4)."""
 
 from __future__ import annotations
 
@@ -6,34 +6,32 @@ from collections.abc import Collection, Sequence
 
 import numpy as np
 
-from mintpilot.core.geometry import Floats, Ints
+from mintpilot.core.geometry import Floats, Ints, SmallInts
 from mintpilot.core.mission import AskingSettings, CriticalityRule
 from mintpilot.core.ports import QueryObjective, QuerySituation
 from mintpilot.core.query import Query
+from mintpilot.core.tolerances import DECIMALS, TOLERANCE
 from mintpilot.core.tree import Mint, ScoredQuery
+from mintpilot.elicitation.objectives.channel import heard, part_sums
 from mintpilot.elicitation.objectives.information_gain import class_gain_bits
 from mintpilot.elicitation.objectives.value_of_information import regret_saved_s
+from mintpilot.elicitation.partitions import part_row
 from mintpilot.elicitation.phrasing_cost import phrasing_cost
-from mintpilot.elicitation.truth import truth_row
-
-TOLERANCE = 1e-9
-"""Seconds that count as none."""
-SAME = 9
-"""Decimal places to which scores are compared: rounding must not decide what is asked."""
 
 
 def query_situation(queries: Sequence[Query], mint: Mint, regret_s: Floats, settings: AskingSettings) -> QuerySituation:
-    """What an objective may look at: the joint hypotheses of the tree, flattened, and every cut's true answers."""
+    """What an objective may look at: the joint hypotheses of the tree, flattened, and the parts of every query."""
     support = mint.support
     p = mint.belief.probability.ravel()[support]
-    yes = np.zeros((len(queries), support.size), bool)
-    for row, query in zip(yes, queries, strict=True):
-        row[:] = truth_row(query, mint.belief)[support]
+    parts: SmallInts = np.zeros((len(queries), support.size), np.int8)
+    for row, query in zip(parts, queries, strict=True):
+        row[:] = part_row(query, mint.belief)[support]
     return QuerySituation(
         probability=p / p.sum(),
         class_of=decisions(mint.class_of.ravel()[support], p, regret_s, settings),
         regret_s=regret_s,
-        yes=yes,
+        parts=parts,
+        part_count=np.array([q.part_count for q in queries], np.int64),
         settings=settings,
     )
 
@@ -52,7 +50,7 @@ def decisions(class_of: Ints, probability: Floats, regret_s: Floats, settings: A
     merged = np.full(len(class_of), -1)
     left = np.asarray(probability, float).copy()
     for number in range(len(regret_s)):
-        best = int(np.argmax(np.round(weight @ left, SAME)))
+        best = int(np.argmax(np.round(weight @ left, DECIMALS)))
         taken = good[best] & (merged < 0)
         merged[taken] = number
         left[taken] = 0.0
@@ -72,18 +70,18 @@ def choose(
     asked: Collection[str] = (),
     proposed_by: str = "enumeration",
 ) -> tuple[ScoredQuery, ...]:
-    """The cuts with their worth, best first; ties go to the one that is easier to say, then by id.
+    """The queries with their worth, best first; ties go to the one of less phrasing cost, then by id.
 
-    A cut that was answered before is left out unless answers may be wrong: then asking again tells something new.
+    A query that was answered before is left out unless answers may be wrong: then asking again has some gain.
 
     Args:
-        queries: candidate cuts over gaps on the tree's axes.
-        mint: the tree; each joint hypothesis keeps its leaf while cuts are scored.
+        queries: candidates over gaps on the tree's axes.
+        mint: the tree; each joint hypothesis keeps its leaf while queries are scored.
         regret_s: from `mintpilot.reasoning.situation.regret_matrix`.
         objective: how worth is judged.
         settings: answer error, price, tolerances.
-        asked: ids of cuts that were answered.
-        proposed_by: who proposed these cuts.
+        asked: ids of queries that were answered.
+        proposed_by: who proposed these queries.
 
     Raises:
         LimitError: from the objective, when the situation is too large for it.
@@ -94,16 +92,14 @@ def choose(
     situation = query_situation(kept, mint, regret_s, settings)
     scores = objective.scores(situation)
     gains, saved = class_gain_bits(situation), regret_saved_s(situation)
-    error = settings.answer_error
-    yes = situation.yes @ situation.probability
-    heard = (1 - error) * yes + error * (1 - yes)
+    replies = reply_probabilities(situation)
     found = [
         ScoredQuery(
             query=query,
             score=float(scores[i]),
             gain_bits=float(gains[i]),
             regret_saved_s=float(saved[i]),
-            yes_probability=float(heard[i]),
+            reply_probabilities=replies[i],
             proposed_by=proposed_by,
         )
         for i, query in enumerate(kept)
@@ -111,13 +107,19 @@ def choose(
     return rank(found)
 
 
+def reply_probabilities(situation: QuerySituation) -> list[tuple[float, ...]]:
+    """For each query, with which probability each of its parts will be named in answer, wrong answers included."""
+    named = heard(part_sums(situation, situation.probability[:, None]), situation)[:, :, 0]
+    return [tuple(row[:count].tolist()) for row, count in zip(named, situation.part_count.tolist(), strict=True)]
+
+
 def rank(scored: Collection[ScoredQuery]) -> tuple[ScoredQuery, ...]:
-    """Best first; ties by ease of saying, then by id."""
-    return tuple(sorted(scored, key=lambda s: (-round(s.score, SAME), *phrasing_cost(s.query))))
+    """Best first; ties by phrasing cost, then by id."""
+    return tuple(sorted(scored, key=lambda s: (-round(s.score, DECIMALS), *phrasing_cost(s.query))))
 
 
 def merge(*lists: Collection[ScoredQuery]) -> tuple[ScoredQuery, ...]:
-    """Several ranked lists as one, e.g. enumerated and proposed cuts; of equal cuts the first stays."""
+    """Several ranked lists as one, e.g. enumerated and proposed queries; of equal ones the first stays."""
     found: dict[str, ScoredQuery] = {}
     for scored in (s for several in lists for s in several):
         found.setdefault(scored.query.id, scored)

@@ -1,12 +1,13 @@
-"""How easily a cut is said and answered: the tie-break between equally good ones (method, section 4)."""
+"""Phrasing cost: how hard a query is to say and to answer. It breaks ties between good ones (method, section 4)."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import lru_cache
 
-from mintpilot.core.query import Query, SayingKind
+from mintpilot.core.query import Literal, Query, SayingKind
 
-_EFFORT = {
+_COST = {
     SayingKind.VALUE: 1.0,
     SayingKind.ATTRIBUTE: 1.2,
     SayingKind.THRESHOLD: 1.4,
@@ -14,16 +15,17 @@ _EFFORT = {
 }
 
 
-def effort(query: Query) -> float:
-    """Effort of saying and answering a cut, without unit; lower is easier.
-
-    One named thing is easiest, then an attribute, a threshold, a relation; every further literal adds its own effort
-    and one more for the joining word.
-    """
-    return sum(_EFFORT[x.saying.kind] for x in query.literals) + (len(query.literals) - 1)
-
-
 @lru_cache(maxsize=1 << 14)
 def phrasing_cost(query: Query) -> tuple[float, str]:
-    """Orders cuts: easier ones first, then by id."""
-    return effort(query), query.id
+    """Orders queries: those of less cost first, then by id. The cost has no unit.
+
+    One named thing costs least, then an attribute, a threshold, a relation; every further literal adds its own cost and
+    one more for the joining word; so does every further option of a choice.
+    """
+    if query.is_choice:
+        return sum(_cost(option.literals) for option in query.options) + query.part_count - 1, query.id
+    return _cost(query.literals), query.id
+
+
+def _cost(literals: Sequence[Literal]) -> float:
+    return sum(_COST[x.saying.kind] for x in literals) + (len(literals) - 1)

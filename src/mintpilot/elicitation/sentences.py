@@ -1,4 +1,4 @@
-"""One short yes/no sentence for a cut. Never negated; yes means what the cut says."""
+"""One short sentence for a query. Never negated; of a yes/no query, yes means what the query says."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ MAX_WORDS = 20
 
 
 def sentence(query: Query, gaps: Mapping[str, KnowledgeGap], attempt: int = 1) -> str:
-    """The cut as a question; a second attempt uses other words, a third the first ones again.
+    """The query as a question; a second attempt uses other words, a third the first ones again.
 
     Descriptions are shortened only where the sentence would pass `MAX_WORDS`.
     """
@@ -38,15 +38,18 @@ def sentence(query: Query, gaps: Mapping[str, KnowledgeGap], attempt: int = 1) -
 
 
 def is_sayable(query: Query, gaps: Mapping[str, KnowledgeGap]) -> bool:
-    """Whether the cut fits into `MAX_WORDS` words, with everything called by its full description, and in one form."""
-    owned = {is_possession(x.saying.name) for x in query.literals if x.saying.kind is SayingKind.ATTRIBUTE}
-    if len(owned) > 1:
+    """Whether the query fits into `MAX_WORDS` words and one form, everything called by its full description."""
+    owned = {is_possession(x.saying.name) for x in query.every_literal if x.saying.kind is SayingKind.ATTRIBUTE}
+    if len(owned) > 1 and not query.is_choice:
         return False
     return all(len(_sentence(query, gaps, attempt, subject_of).split()) <= MAX_WORDS for attempt in (1, 2))
 
 
 def _sentence(query: Query, gaps: Mapping[str, KnowledgeGap], attempt: int, name: Callable[[KnowledgeGap], str]) -> str:
     first = attempt % 2 == 1
+    if query.is_choice:
+        offered = joined([query.part_words(part) for part in range(query.part_count)], "or")
+        return f"Which is it: {offered}?" if first else f"Which of these is right: {offered}?"
     subjects = [name(gaps[x.gap]) for x in query.literals]
     kinds = {gaps[x.gap].kind for x in query.literals}
     if kinds == {GapKind.OBSTACLE}:

@@ -1,4 +1,4 @@
-"""From a cut to a question with words and consequences. Words never decide meaning (method, section 4)."""
+"""From a query to a question with words and consequences. Words never decide meaning (method, section 4)."""
 
 from __future__ import annotations
 
@@ -9,50 +9,53 @@ import numpy as np
 from mintpilot.core.gap import PASSABLE, GapKind, KnowledgeGap
 from mintpilot.core.geometry import Bools
 from mintpilot.core.plan import Plan
-from mintpilot.core.query import Query, Question
+from mintpilot.core.query import NO_PART, YES_PART, Query, Question
 from mintpilot.core.tree import Mint
 from mintpilot.elicitation.phrases import joined, subject_of, thing_called
 from mintpilot.elicitation.sentences import sentence
 
 
 def word_question(query: Query, gaps: Sequence[KnowledgeGap], mint: Mint | None, *, attempt: int = 1) -> Question:
-    """The question for a cut, by template: at most 20 words, never negated, with what Yes and No do to the flight.
+    """The question for a query, by template: at most 20 words, never negated, with what each answer does to the flight.
 
     Args:
-        query: the cut.
+        query: what is asked.
         gaps: at least the gaps that it speaks of.
         mint: the tree that it was chosen on, for the consequences; None gives general ones.
-        attempt: from 2 on the same cut is put in other words.
+        attempt: from 2 on the same query is put in other words.
 
     Raises:
         KeyError: a gap of the query is not among ``gaps``.
     """
     known = {g.id: g for g in gaps}
     about = tuple(known[name] for name in query.gap_ids)
-    yes, no = _consequences(query, about, mint)
+    means = _consequences(query, about, mint)
     return Question(
         query=query,
         text=sentence(query, known, attempt),
-        yes_means=yes,
-        no_means=no,
+        yes_means="" if query.is_choice else means[YES_PART],
+        no_means="" if query.is_choice else means[NO_PART],
+        option_means=means if query.is_choice else (),
         gaps=about,
         attempt=attempt,
     )
 
 
-def _consequences(query: Query, about: tuple[KnowledgeGap, ...], mint: Mint | None) -> tuple[str, str]:
-    """What follows from Yes and from No for the flight, the likeliest plan each way."""
+def _consequences(query: Query, about: tuple[KnowledgeGap, ...], mint: Mint | None) -> tuple[str, ...]:
+    """What follows from each answer for the flight: the likeliest plan."""
     if mint is None or not set(query.gap_ids) <= {g.id for g in mint.belief.gaps}:
-        return _general(about, True), _general(about, False)
-    truth = query.truths(mint.belief)
-    sides = [_likeliest(mint, agrees) for agrees in (truth, ~truth)]
+        return tuple(_general(query, about, part) for part in range(query.part_count))
+    table = query.part_table(mint.belief)
+    plans = [_likeliest(mint, table == part) for part in range(query.part_count)]
     texts = []
-    for mine, other in (sides, sides[::-1]):
-        plan, sure = mine
+    for part, (plan, sure) in enumerate(plans):
         text = _flight(plan, sure, about)
-        longer = plan.cost_s - other[0].cost_s if plan is not None and other[0] is not None else 0.0
-        texts.append(f"{text}, {longer:.0f} s longer" if sure and other[1] and longer >= 1 else text)
-    return texts[0], texts[1]
+        others = [other for i, (other, _) in enumerate(plans) if i != part]
+        costs = [other.cost_s for other in others if other is not None]
+        longer = plan.cost_s - min(costs) if plan is not None and costs else 0.0
+        settled = all(other_sure for _, other_sure in plans)
+        texts.append(f"{text}, {longer:.0f} s longer" if settled and longer >= 1 else text)
+    return tuple(texts)
 
 
 def _likeliest(mint: Mint, agrees: Bools) -> tuple[Plan | None, bool]:
@@ -88,8 +91,11 @@ def _flight(plan: Plan | None, sure: bool, about: tuple[KnowledgeGap, ...]) -> s
     return f"{i} fly for {plan.cost_s:.0f} s"
 
 
-def _general(about: tuple[KnowledgeGap, ...], yes: bool) -> str:
-    """Consequences where no tree tells them."""
+def _general(query: Query, about: tuple[KnowledgeGap, ...], part: int) -> str:
+    """Consequences where there is no tree to take them from."""
+    if query.is_choice:
+        return "I plan with this"
+    yes = part == YES_PART
     it = "it" if len(about) == 1 else "them"
     kinds = {g.kind for g in about}
     if kinds == {GapKind.OBSTACLE} and all(PASSABLE in g.values for g in about):

@@ -11,7 +11,7 @@ import numpy as np
 from mintpilot.core.errors import InputError
 from mintpilot.core.inputs import Answered, OperatorInput, Ordered, QuestionShown
 from mintpilot.core.ports import Operator, TruthOracle
-from mintpilot.core.query import Answer, Order, Question, Reply
+from mintpilot.core.query import Answer, Order, Question, Reply, answer_for
 
 
 @dataclass(slots=True)
@@ -74,12 +74,14 @@ class _Script(Operator):
 class ScriptedOperator(_Script):
     """Answers from the truth, with as much error, doubt and silence as is asked for.
 
-    Each question draws the same amount of random numbers, so that one rate does not disturb the others.
+    Each yes/no question draws the same amount of random numbers, so that one rate does not disturb the others; a wrong
+    answer to a choice draws one more.
 
     Args:
         truth: knows the value of every gap.
         rng: decides on errors, doubt and silence.
-        answer_error: probability that a yes or no is the opposite of the truth [e].
+        answer_error: probability that an answer names another part of the query than the true one [e]; all others are
+            equally likely.
         unsure_rate: probability of "I don't know".
         silence_rate: probability of no answer at all.
         latency_s: seconds of mission time that an answer takes; longer than the patience is silence.
@@ -123,24 +125,24 @@ class ScriptedOperator(_Script):
         wrong, unsure, silent = self._rng.random(3) < (self._answer_error, self._unsure_rate, self._silence_rate)
         if silent or self._latency_s > patience_s:
             return Answer(reply=Reply.TIMEOUT, latency_s=patience_s)
-        truth = self._true_answer(question)
-        if truth is None or unsure:
+        part = self._true_part(question)
+        if part is None or unsure:
             return Answer(reply=Reply.UNSURE, latency_s=self._latency_s, text="don't know")
-        says_yes = truth != bool(wrong)
-        return Answer(
-            reply=Reply.YES if says_yes else Reply.NO,
-            latency_s=self._latency_s,
-            text="yes" if says_yes else "no",
-        )
+        query = question.query
+        if wrong:
+            others = [other for other in range(query.part_count) if other != part]
+            # The only other part of a yes/no query needs no draw.
+            part = others[0] if len(others) == 1 else others[int(self._rng.integers(len(others)))]
+        return answer_for(query, part, latency_s=self._latency_s, text=query.part_words(part))
 
     def _reply(self, question: Question, patience_s: float) -> Answer:
         return self.answer(question, patience_s)
 
-    def _true_answer(self, question: Question) -> bool | None:
+    def _true_part(self, question: Question) -> int | None:
         values = {gap.id: value for gap in question.gaps if (value := self._truth.value_of(gap)) is not None}
         if any(gap_id not in values for gap_id in question.query.gap_ids):
             return None
-        return question.query.holds(values)
+        return question.query.part_of(values)
 
 
 class RecordedOperator(_Script):

@@ -113,7 +113,7 @@ def consequence(english: str, tongue: Tongue) -> str:
 def _ask(query: Query, gaps: Mapping[str, KnowledgeGap], tongue: Tongue) -> str:
     kinds = [_kind(x, gaps[x.gap]) for x in query.literals]
     subjects = [_subject(x, gaps[x.gap], tongue) for x in query.literals]
-    if not all(kinds) or not all(subjects):
+    if query.is_choice or not all(kinds) or not all(subjects):
         return ""
     if len(kinds) == 1:
         return tongue.asks[kinds[0]].format(subjects[0])

@@ -19,7 +19,7 @@ from mintpilot.mapping.identity import Names
 from mintpilot.mapping.objects import Tracks
 from mintpilot.mapping.rays import cast_rays
 from mintpilot.mapping.settings import MappingSettings
-from mintpilot.mapping.smoke import Clouds, Evidence, cells_in
+from mintpilot.mapping.smoke import Clouds, SmokeEvidence, cells_in
 
 
 class MapBuilder:
@@ -146,7 +146,7 @@ class MapBuilder:
         objects = fused_objects(self._tracks.all, draft)
         flames = [thing.box_m for thing in objects if thing.label == "fire"]
         blazing = self._blazing(flames)
-        evidence = Evidence(solid=self._solid, free=cells == Cell.FREE, blazing=blazing)
+        evidence = SmokeEvidence(solid=self._solid, free=cells == Cell.FREE, blazing=blazing)
         clouds = self._clouds.clouds(evidence, self._volume, self._settings)
         cells[self._clouds.front_of(clouds, self._solid) & (cells == Cell.OCCUPIED)] = Cell.UNKNOWN
         blazing |= self._blazing(self._glow.boxes(clouds, flames, self._clouds.seen))

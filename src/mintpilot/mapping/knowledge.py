@@ -2,19 +2,10 @@
 
 from __future__ import annotations
 
-from mintpilot.core.gap import PASSABLE, PRESENT, Belief
+from mintpilot.core.gap import PASSABLE, PRESENT, Belief, obstacle_id, presence_id
 from mintpilot.core.mission import AskingSettings
 from mintpilot.core.semantic_map import Knowledge, SemanticMap
-
-
-def region_gap_id(region_id: str) -> str:
-    """Id of the obstacle gap that asks whether that region is passable."""
-    return f"obstacle:{region_id}"
-
-
-def room_gap_id(room_id: str) -> str:
-    """Id of the presence gap that asks whether somebody is in that room."""
-    return f"presence:{room_id}"
+from mintpilot.core.tolerances import ROUNDING
 
 
 def apply_knowledge(
@@ -35,22 +26,22 @@ def apply_knowledge(
     """
     known = {gap.id for gap in belief.gaps}
     for region in map.regions:
-        gap_id = region_gap_id(region.id)
+        gap_id = obstacle_id(region.id)
         if region.passable is not Knowledge.OPEN or gap_id not in known:
             continue
         passable = belief.probability_of(gap_id, PASSABLE)
         # Sums of many terms: a posterior that is 1 but for rounding must count as 1, also with alpha_safe = 0.
-        if passable >= 1 - settings.alpha_safe - 1e-12 and gap_id in confirmed:
+        if passable >= 1 - settings.alpha_safe - ROUNDING and gap_id in confirmed:
             map = map.with_region(region.id, Knowledge.YES)
-        elif passable <= settings.alpha_safe + 1e-12:
+        elif passable <= settings.alpha_safe + ROUNDING:
             map = map.with_region(region.id, Knowledge.NO)
     for room in map.rooms:
-        gap_id = room_gap_id(room.id)
+        gap_id = presence_id(room.id)
         if room.occupied is not Knowledge.OPEN or gap_id not in known:
             continue
         present = belief.probability_of(gap_id, PRESENT)
-        if present >= 1 - settings.alpha - 1e-12:
+        if present >= 1 - settings.alpha - ROUNDING:
             map = map.with_room(room.id, occupied=Knowledge.YES)
-        elif present <= settings.alpha + 1e-12:
+        elif present <= settings.alpha + ROUNDING:
             map = map.with_room(room.id, occupied=Knowledge.NO)
     return map

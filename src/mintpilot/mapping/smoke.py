@@ -21,7 +21,7 @@ FREE_BETWEEN = 0.25
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Evidence:
+class SmokeEvidence:
     """What is known of the voxels besides smoke; each array is (nz, ny, nx)."""
 
     solid: NDArray[np.int32]
@@ -89,7 +89,7 @@ class Clouds:
         front &= (solid < 2) | (near_smoke >= 0.4 * solid)
         return front
 
-    def clouds(self, evidence: Evidence, volume: Box, settings: MappingSettings) -> list[Cloud]:
+    def clouds(self, evidence: SmokeEvidence, volume: Box, settings: MappingSettings) -> list[Cloud]:
         """The clouds known so far, from west to east.
 
         Each is the upright box around its visible front, with a margin for the thin edge that the sensor looks

@@ -110,7 +110,7 @@ def _late(t: Transition, event: Answered) -> None:
     """An answer to a question that is no longer open: it counts where it adds caution, and is kept for the report."""
     query = dict(t.state.earlier).get(event.question)
     said = event.answer.text or event.answer.reply.value
-    if query is None or t.state.beliefs is None or event.answer.reply not in (Reply.YES, Reply.NO):
+    if query is None or t.state.beliefs is None or event.answer.part is None:
         t.note("late-answer", f"'{said}' came when nothing was asked; it changed nothing.")
         return
     before = t.beliefs
@@ -137,4 +137,4 @@ def _after_late(before: BeliefState, query: Query, answer: Answer, t: Transition
     held = {gap.id for gap in before.belief.gaps}
     if not result.contradiction and set(query.gap_ids) <= held:
         return result.state
-    return revoke(before, query, answer.reply)
+    return revoke(before, query, answer.part)

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 from mintpilot.core.gap import PASSABLE, Belief, GapKind, KnowledgeGap
 from mintpilot.core.mission import AskingSettings
-from mintpilot.core.query import Answer, Combine, Query, Reply
+from mintpilot.core.query import Answer, Evidence, Query, Reply
 from mintpilot.core.semantic_map import SemanticMap
 from mintpilot.mission.extra_evidence import with_extra_evidence
 from mintpilot.reasoning.belief import condition
@@ -23,8 +23,8 @@ class BeliefState:
     """Obstacle gaps that got an explicit yes."""
     withdrawn: frozenset[str] = frozenset()
     """Queries that are not asked again: answered UNSURE, or contradicting twice."""
-    asked: tuple[tuple[Query, bool], ...] = ()
-    """Queries that were answered, oldest first."""
+    asked: tuple[Evidence, ...] = ()
+    """Queries that were answered, with the answer, oldest first."""
     attempts: tuple[str, ...] = ()
     """Ids of all queries that were put, oldest first, answered or not."""
     finished: frozenset[str] = frozenset()
@@ -49,27 +49,25 @@ def update(state: BeliefState, query: Query, answer: Answer, settings: AskingSet
     state = replace(state, attempts=(*state.attempts, query.id))
     if answer.reply is Reply.TIMEOUT:
         return AnswerUpdate(state=replace(state, silent=True))
-    if answer.reply is Reply.UNSURE:
+    if answer.part is None:
         return AnswerUpdate(state=replace(state, withdrawn=state.withdrawn | {query.id}))
-    yes = answer.reply is Reply.YES
-    after = condition(state.belief, query, answer.reply, settings.answer_error)
+    after = condition(state.belief, query, answer.part, settings.answer_error, max_joint=settings.max_joint)
     if after.contradiction:
         given_up = frozenset({query.id}) if state.attempts.count(query.id) > 1 else frozenset[str]()
         return AnswerUpdate(state=replace(state, withdrawn=state.withdrawn | given_up), contradiction=True)
     belief, refused = with_extra_evidence(state.belief, after.belief, query, answer, settings)
-    confirmed = confirmed_by(query, state.belief.gaps) if yes else frozenset[str]()
+    confirmed = state.confirmed | confirmed_by(query, answer.part, state.belief.gaps)
+    asked = (*state.asked, Evidence(query=query, part=answer.part))
     return AnswerUpdate(
-        state=replace(state, belief=belief, confirmed=state.confirmed | confirmed, asked=(*state.asked, (query, yes))),
+        state=replace(state, belief=belief, confirmed=confirmed, asked=asked),
         extra_refused=refused,
     )
 
 
-def confirmed_by(query: Query, gaps: Sequence[KnowledgeGap]) -> frozenset[str]:
-    """Obstacle gaps that a yes says outright to be passable: the query is about them alone, or joined by *and*."""
-    if len(query.literals) > 1 and query.combine is Combine.ANY:
-        return frozenset()
+def confirmed_by(query: Query, part: int, gaps: Sequence[KnowledgeGap]) -> frozenset[str]:
+    """Obstacle gaps that this answer says outright to be passable: about them alone, or joined by *and*."""
     obstacles = {gap.id for gap in gaps if gap.kind is GapKind.OBSTACLE}
-    return frozenset(x.gap for x in query.literals if x.gap in obstacles and x.values == frozenset({PASSABLE}))
+    return frozenset(x.gap for x in query.asserted(part) if x.gap in obstacles and x.values == frozenset({PASSABLE}))
 
 
 def remaining_budget(settings: AskingSettings, state: BeliefState) -> AskingSettings:

@@ -80,6 +80,8 @@ class Deliberation:
         """What bounds on the work left out, in plain sentences: plans stay safe, but may not be the best."""
         mint = self.decision.mint
         notes = self.situation.space.notes
+        if isinstance(self.decision, Fly):
+            notes = (*notes, *(notice.rstrip(".") for notice in self.decision.notices))
         if mint is None or not mint.not_expanded:
             return notes
         return (*notes, f"{mint.not_expanded} leaves of the tree were not expanded; they get the cautious plan")
@@ -210,7 +212,7 @@ def _gaps_of(
         finished=state.finished,
         honour_wishes=honour_wishes,
     )
-    return findings, extend(state.belief, findings.gaps, parts.groups)
+    return findings, extend(state.belief, findings.gaps, parts.groups, max_joint=parts.settings.max_joint)
 
 
 def _wishes(state: BeliefState, parts: DeliberationParts, start_m: Vec3) -> bool:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from mintpilot.core.gap import Belief
 from mintpilot.core.mission import AskingSettings
-from mintpilot.core.query import Answer, Query, Reply
+from mintpilot.core.query import Answer, Evidence, Query
 from mintpilot.reasoning.belief import condition
 
 
@@ -20,26 +20,26 @@ def with_extra_evidence(
         before: what was believed before the answer.
         after: the same with the answer to the question itself.
         query: what was asked.
-        answer: Yes or No, with what was said besides; cuts about gaps that are not open are left out.
+        answer: one that names a part, with what was said besides; what is about gaps that are not open is left out.
         settings: the answer error.
     """
     known = {gap.id for gap in before.gaps}
-    also = [(cut, yes) for cut, yes in answer.also if set(cut.gap_ids) <= known]
-    belief = after
-    for cut, yes in also:
-        whole = len(also) == 1 and _settles(cut, yes, query, answer, before)
-        update = condition(before if whole else belief, cut, Reply.YES if yes else Reply.NO, settings.answer_error)
+    also = [one for one in answer.also if set(one.query.gap_ids) <= known]
+    belief, error, most = after, settings.answer_error, settings.max_joint
+    for one in also:
+        whole = len(also) == 1 and _settles(one, query, answer, before)
+        update = condition(before if whole else belief, one.query, one.part, error, max_joint=most)
         if update.contradiction:
             return after, True
         belief = update.belief
     return belief, False
 
 
-def _settles(cut: Query, yes: bool, query: Query, answer: Answer, belief: Belief) -> bool:
-    """Whether that answer to the one cut leaves no other answer to the query; both about one and the same gap."""
-    if len(cut.gap_ids) != 1 or cut.gap_ids != query.gap_ids:
+def _settles(one: Evidence, query: Query, answer: Answer, belief: Belief) -> bool:
+    """Whether that evidence leaves no other answer to the query; both about one and the same gap."""
+    if len(one.query.gap_ids) != 1 or one.query.gap_ids != query.gap_ids:
         return False
-    (name,) = cut.gap_ids
+    (name,) = query.gap_ids
     (gap,) = (g for g in belief.gaps if g.id == name)
-    left = [v for v in gap.values if cut.holds({name: v}) == yes]
-    return bool(left) and all(query.holds({name: v}) == (answer.reply is Reply.YES) for v in left)
+    left = [v for v in gap.values if one.query.part_of({name: v}) == one.part]
+    return bool(left) and all(query.part_of({name: v}) == answer.part for v in left)

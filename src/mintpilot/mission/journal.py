@@ -119,11 +119,11 @@ class Journal:
         )
         self._round += 1
         if isinstance(decision, FlyPlan):
-            accounts = sorted(after.explanations, key=lambda e: e.gap_id)
+            explained = sorted(after.explanations, key=lambda e: e.gap_id)
             yield PlanChosen(
                 plan=decision.plan,
                 certificate=decision.certificate,
-                accounts=tuple(decided(e, e.gap_id in after.asked_gaps) for e in accounts),
+                explanations=tuple(decided(e, e.gap_id in after.asked_gaps) for e in explained),
             )
 
     def _flown(self, before: MissionState, event: MotionEnded) -> Iterator[Event]:

@@ -6,11 +6,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from mintpilot.core.gap import ABSENT, BLOCKED, PASSABLE, PRESENT, Belief, GapKind
+from mintpilot.core.gap import ABSENT, BLOCKED, PASSABLE, PRESENT, Belief, GapKind, obstacle_id, presence_id
 from mintpilot.core.mission import AskingSettings
-from mintpilot.core.query import Query, Reply
+from mintpilot.core.query import YES_PART, Query
 from mintpilot.core.semantic_map import Knowledge, SemanticMap
-from mintpilot.mapping.knowledge import region_gap_id, room_gap_id
 from mintpilot.mission.belief_state import BeliefState
 
 
@@ -29,8 +28,8 @@ class Permissions:
 def permissions(state: BeliefState, settings: AskingSettings) -> Permissions:
     """What the answers so far permit."""
     belief = state.belief
-    enter = {region_gap_id(r.id) for r in state.map.regions if r.passable is Knowledge.YES} | set(state.confirmed)
-    leave_out = {room_gap_id(r.id) for r in state.map.rooms if r.occupied is Knowledge.NO}
+    enter = {obstacle_id(r.id) for r in state.map.regions if r.passable is Knowledge.YES} | set(state.confirmed)
+    leave_out = {presence_id(r.id) for r in state.map.rooms if r.occupied is Knowledge.NO}
     pick: set[tuple[str, str]] = set()
     for gap in belief.gaps:
         may_be_absent = gap.kind is GapKind.PRESENCE and ABSENT in gap.values
@@ -49,7 +48,7 @@ def enlarges(before: BeliefState, after: BeliefState, settings: AskingSettings) 
     return not (new.enter <= old.enter and new.leave_out <= old.leave_out and new.pick <= old.pick)
 
 
-def revoke(state: BeliefState, query: Query, reply: Reply) -> BeliefState:
+def revoke(state: BeliefState, query: Query, part: int | None) -> BeliefState:
     """The state after an answer to an earlier question was taken back.
 
     A single region or room gets the opposite value at once; where the query spoke of more, everything that it spoke of
@@ -58,31 +57,31 @@ def revoke(state: BeliefState, query: Query, reply: Reply) -> BeliefState:
     gaps = frozenset(query.gap_ids)
     map, single = state.map, len(query.literals) == 1
     for region in map.regions:
-        name = region_gap_id(region.id)
+        name = obstacle_id(region.id)
         if name in gaps and region.passable is Knowledge.YES:
-            says = _value(query, reply, PASSABLE, BLOCKED)
-            map = map.with_region(region.id, Knowledge.NO if single and says == BLOCKED else Knowledge.OPEN)
-    map = _reopen_rooms(map, query, reply, single)
+            blocked = single and _value(query, part, PASSABLE, BLOCKED) == BLOCKED
+            map = map.with_region(region.id, Knowledge.NO if blocked else Knowledge.OPEN)
+    map = _reopen_rooms(map, query, part, single)
     belief = Belief(factors=tuple(f for f in state.belief.factors if not any(g.id in gaps for g in f.gaps)))
     return replace(
         state,
         map=map,
         belief=belief,
         confirmed=state.confirmed - gaps,
-        asked=tuple((q, yes) for q, yes in state.asked if not gaps & set(q.gap_ids)),
+        asked=tuple(one for one in state.asked if not gaps & set(one.query.gap_ids)),
     )
 
 
-def _reopen_rooms(map: SemanticMap, query: Query, reply: Reply, single: bool) -> SemanticMap:
+def _reopen_rooms(map: SemanticMap, query: Query, part: int | None, single: bool) -> SemanticMap:
     for room in map.rooms:
-        if room_gap_id(room.id) in query.gap_ids and room.occupied is Knowledge.NO:
-            says = _value(query, reply, PRESENT, ABSENT)
-            map = map.with_room(room.id, occupied=Knowledge.YES if single and says == PRESENT else Knowledge.OPEN)
+        if presence_id(room.id) in query.gap_ids and room.occupied is Knowledge.NO:
+            present = single and _value(query, part, PRESENT, ABSENT) == PRESENT
+            map = map.with_room(room.id, occupied=Knowledge.YES if present else Knowledge.OPEN)
     return map
 
 
-def _value(query: Query, reply: Reply, first: str, second: str) -> str:
-    """Which of two values a reply to a query about one gap says."""
+def _value(query: Query, part: int | None, first: str, second: str) -> str:
+    """Which of two values an answer to a yes/no query about one gap says."""
     named = first if first in query.literals[0].values else second
     other = second if named == first else first
-    return named if reply is Reply.YES else other
+    return named if part == YES_PART else other

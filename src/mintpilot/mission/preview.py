@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 from mintpilot.core.errors import InfeasibleError
 from mintpilot.core.ports import Ask
-from mintpilot.core.query import Answer, Reply
+from mintpilot.core.query import answer_for
 from mintpilot.core.semantic_map import SemanticMap
 from mintpilot.mission.deliberation import Deliberation, DeliberationParts
 from mintpilot.mission.rehearsal import Rehearsal, begin
@@ -68,9 +68,9 @@ def preview(
             return 0.0
         scored, asked = found.decision.scored, here.asked(found)
         total = 1.0
-        for reply, share in ((Reply.YES, scored.yes_probability), (Reply.NO, 1 - scored.yes_probability)):
+        for part, share in enumerate(scored.reply_probabilities):
             if share > 0:
-                total += share * expected(asked.answered(Answer(reply=reply, latency_s=0.0)), weight * share)
+                total += share * expected(asked.answered(answer_for(scored.query, part)), weight * share)
         return total
 
     start = begin(parts, map)

@@ -14,7 +14,7 @@ from mintpilot.core.plan import Plan
 from mintpilot.core.query import Query, Question
 from mintpilot.core.semantic_map import SemanticMap
 from mintpilot.core.trajectory import VehicleState
-from mintpilot.core.tree import GapAccount, ScoredQuery
+from mintpilot.core.tree import GapExplanation, ScoredQuery
 from mintpilot.mission.belief_state import BeliefState
 from mintpilot.mission.requests import Purpose, SurveyProgress
 
@@ -170,7 +170,7 @@ class MissionState:
     """Motions that the vehicle has refused."""
     hops: int = 0
     """Flights towards the start or the landing place so far."""
-    explanations: tuple[GapAccount, ...] = ()
+    explanations: tuple[GapExplanation, ...] = ()
     """Of every gap that was ever open, from the first deliberation that knew of it."""
     asked_gaps: frozenset[str] = frozenset()
     notes: frozenset[str] = frozenset()

@@ -10,6 +10,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
+from mintpilot.mission_file.schema_asking import asking_spec
 from mintpilot.mission_file.schema_base import (
     Attributes,
     Name,
@@ -41,45 +42,15 @@ class VehicleSpec(Spec):
     """Flight time for the mission, seconds; default: unlimited."""
 
 
-BelowOne = Annotated[float, Field(ge=0, lt=1)]
-Count = Annotated[int, Field(ge=1)]
+StrategyArguments = dict[str, dict[str, bool | int | float | str]]
 
 
-class AskingSpec(Spec):
+class AskingSpec(asking_spec()):  # type: ignore[misc]  # made of the fields of AskingSettings
     """Thresholds and bounds of reasoning and asking."""
 
-    rule: Literal["paper", "regret"] = "regret"
-    """Which differences make a gap critical: cost or divergence (`paper`), or cost alone (`regret`)."""
-    delta_c_s: NotNegative = 2.0
-    """Cost difference that is worth a question, seconds."""
-    delta_d_m: NotNegative = 2.0
-    """Divergence that is worth a question under the paper's rule, metres."""
-    goal_entropy_bits: NotNegative = 0.3
-    """A target gap with more entropy than this is critical, bits."""
-    alpha: BelowOne = 0.05
-    """Stop asking when one plan class holds at least 1 - alpha."""
-    alpha_safe: BelowOne = 0.01
-    """A region counts as passable from a posterior of 1 - alpha_safe on, after an explicit yes."""
-    answer_error: Annotated[float, Field(ge=0, lt=0.5)] = 0.0
-    """Probability that an answer is the opposite of the truth, as the drone believes."""
-    floor: BelowOne = 1e-6
-    """Joint hypotheses below this probability are not planned for."""
-    question_price_s: NotNegative = 0.0
-    """What a question costs the person, in seconds of flight."""
-    failure_price_s: NotNegative = 600.0
-    """What a failed mission counts for, in seconds of flight, where expected losses are weighed."""
-    max_questions: Annotated[int, Field(ge=0)] = 20
-    """Budget of questions."""
-    patience_s: NotNegative = 30.0
-    """How long an answer is waited for, seconds."""
-    objective: Name = "information-gain"
-    """Name of the query objective."""
-    max_nodes: Count = 4096
-    """Bound on the tree's nodes."""
-    max_joint: Count = 65536
-    """Bound on the joint hypotheses held."""
-    impact_metric: Name = "frechet"
-    """Name of the distance between paths."""
+    strategy_arguments: StrategyArguments = Field(default_factory=dict)
+    """Arguments of methods of asking, by the name of the strategy, e.g. `{knowno: {quantile: 0.8}}`;
+    `--strategy-arg` overrides them."""
 
 
 class SurveySpec(Spec):

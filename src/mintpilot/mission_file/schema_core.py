@@ -42,7 +42,7 @@ def limits_of(file: MissionFile) -> VehicleLimits:
 
 def asking_of(file: MissionFile) -> AskingSettings:
     """Thresholds and bounds."""
-    values = file.asking.model_dump()
+    values = file.asking.model_dump(exclude={"strategy_arguments"})
     return AskingSettings(**{**values, "rule": CriticalityRule(values["rule"])})
 
 

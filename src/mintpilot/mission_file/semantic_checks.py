@@ -7,6 +7,8 @@ from collections import Counter
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
+from mintpilot.core.gap import ABSENT, BLOCKED, PASSABLE, PRESENT, GapKind, kind_of, obstacle_id, presence_id
+from mintpilot.core.tolerances import SUM_TOLERANCE
 from mintpilot.mission_file.form_checks import nearest, show
 from mintpilot.mission_file.schema import CorrelationSpec, GoalSpec, MissionFile
 from mintpilot.mission_file.schema_world import MapWorld, SceneWorld
@@ -14,7 +16,7 @@ from mintpilot.mission_file.semantic_checks_map import map_faults
 from mintpilot.mission_file.semantic_checks_scene import scene_faults
 from mintpilot.mission_file.yaml_places import Fault, Path_
 
-_VALUES = {"obstacle": ("passable", "blocked"), "presence": ("present", "absent")}
+_VALUES = {GapKind.OBSTACLE: (PASSABLE, BLOCKED), GapKind.PRESENCE: (PRESENT, ABSENT)}
 
 
 def contradictions(mission: MissionFile, base: Path) -> Iterator[Fault]:
@@ -78,7 +80,7 @@ def _truth_faults(mission: MissionFile) -> Iterator[Fault]:
     world = mission.world
     regions, rooms = {r.id: r for r in world.regions}, {r.id: r for r in world.rooms}
     phrases = {g.phrase: g for g in mission.goals or () if g.phrase}
-    allowed = dict.fromkeys(regions, _VALUES["obstacle"]) | dict.fromkeys(rooms, _VALUES["presence"])
+    allowed = dict.fromkeys(regions, _VALUES[GapKind.OBSTACLE]) | dict.fromkeys(rooms, _VALUES[GapKind.PRESENCE])
     for subject, value in mission.truth.items():
         path: Path_ = ("truth", subject)
         thing = regions.get(subject) or rooms.get(subject) or phrases.get(subject)
@@ -99,22 +101,22 @@ def _correlation_faults(mission: MissionFile) -> Iterator[Fault]:
     seen = Counter(gap for group in mission.correlations for gap in group.gaps)
     known: list[str] | None = None
     if isinstance(mission.world, MapWorld):
-        known = [f"obstacle:{r.id}" for r in mission.world.regions if r.passable is None]
-        known += [f"presence:{r.id}" for r in mission.world.rooms if r.occupied is None]
+        known = [obstacle_id(r.id) for r in mission.world.regions if r.passable is None]
+        known += [presence_id(r.id) for r in mission.world.rooms if r.occupied is None]
     for index, group in enumerate(mission.correlations):
         path: Path_ = ("correlations", index)
         for place, gap in enumerate(group.gaps):
             if seen[gap] > 1:
                 yield _fault((*path, "gaps", place), f"'{gap}' is named {seen[gap]} times; a gap is in one group, once")
             masked = known is not None and gap.rpartition("-")[0] in known
-            if known is not None and gap not in known and not masked and not gap.startswith("target:"):
+            if known is not None and gap not in known and not masked and kind_of(gap) is not GapKind.TARGET:
                 yield _fault((*path, "gaps", place), f"there is no gap '{gap}'; {nearest(gap, known)}")
         yield from _joint_faults(group, path)
 
 
 def _joint_faults(group: CorrelationSpec, path: Path_) -> Iterator[Fault]:
     total = sum(c.probability for c in group.joint)
-    if not math.isclose(total, 1, abs_tol=1e-6):
+    if not math.isclose(total, 1, abs_tol=SUM_TOLERANCE):
         yield _fault((*path, "joint"), f"the probabilities sum to {total:g}; they must sum to 1")
     for index in _repeated(tuple(c.values) for c in group.joint):
         yield _fault((*path, "joint", index), f"{show(group.joint[index].values)} is given twice; keep one of them")
@@ -124,7 +126,8 @@ def _joint_faults(group: CorrelationSpec, path: Path_) -> Iterator[Fault]:
             yield _fault(here, f"{len(combination.values)} values for {len(group.gaps)} gaps; give one for each")
             continue
         for place, (gap, value) in enumerate(zip(group.gaps, combination.values, strict=True)):
-            values = _VALUES.get(gap.partition(":")[0])
+            kind = kind_of(gap)
+            values = _VALUES.get(kind) if kind is not None else None
             if values and value not in values:
                 yield _fault((*here, place), f"'{value}' is not a value of '{gap}'; {nearest(value, values)}")
 

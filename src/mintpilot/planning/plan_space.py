@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from mintpilot.core.gap import BLOCKED, PASSABLE, Assumptions
 from mintpilot.core.plan import Plan, PlanningProblem, Stop
 from mintpilot.core.ports import PlanSpace
+from mintpilot.core.tolerances import TOLERANCE
 from mintpilot.planning.itinerary import itinerary_of, needed_value
 from mintpilot.planning.legs import LegTable, WaySearch
 from mintpilot.planning.route import Route, best_route
@@ -138,4 +139,4 @@ class GridPlanSpace(PlanSpace):
         if best is None:
             return None
         plan = self.itinerary.plan(best[1], best[2], case.visits)
-        return plan if plan.cost_s <= self.itinerary.problem.limits.endurance_s + 1e-9 else None
+        return plan if plan.cost_s <= self.itinerary.problem.limits.endurance_s + TOLERANCE else None

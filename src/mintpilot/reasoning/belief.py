@@ -15,15 +15,14 @@ import numpy as np
 from mintpilot.core.errors import LimitError, MissionError
 from mintpilot.core.gap import Belief, CorrelationGroup, Joint, KnowledgeGap
 from mintpilot.core.geometry import Floats
-from mintpilot.core.query import Query, Reply
+from mintpilot.core.query import Query
+from mintpilot.core.tolerances import ROUNDING, SUM_TOLERANCE
 from mintpilot.reasoning.tables import marginalise, product, sliced, split_certain
 
 MAX_JOINT = 65536
 """Default bound on the cells of one factor."""
 SURPRISE = 0.05
 """With a positive answer error, an answer that was expected with less probability than this is a contradiction."""
-IMPOSSIBLE = 1e-12
-"""Masses up to this come from rounding."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -35,7 +34,7 @@ class Posterior:
     contradiction: bool
     """The answer has no probability left (answer error 0), or far less than the answer error explains."""
     expected: float
-    """Probability with which this reply was expected, 0 to 1; 1 for replies that tell nothing."""
+    """Probability with which this reply was expected, 0 to 1; 1 for replies without information."""
 
 
 def prior_belief(
@@ -67,26 +66,33 @@ def prior_belief(
 
 
 def condition(
-    belief: Belief, query: Query, reply: Reply, answer_error: float, *, max_joint: int = MAX_JOINT
+    belief: Belief, query: Query, part: int | None, answer_error: float, *, max_joint: int = MAX_JOINT
 ) -> Posterior:
-    """The belief after a reply: P(h | y) proportional to P(y | q, h) P(h); with ``answer_error`` 0 this is pruning.
+    """The belief after an answer: P(h | y) proportional to P(y | q, h) P(h); with ``answer_error`` 0 this is pruning.
 
-    UNSURE and TIMEOUT tell nothing. A contradiction is a value, not an error (method, section 5). Literals about gaps
-    that the belief does not hold are answered by nobody: a query about such gaps alone changes nothing.
+    The answer names the right part of the query with probability ``1 - answer_error``, and each other one with an equal
+    share of ``answer_error``. A contradiction is a value, not an error (method, section 5). A query about gaps that the
+    belief does not hold changes nothing.
+
+    Args:
+        belief: before the answer.
+        query: what was asked.
+        part: which of its parts the answer names (`Answer.part`); None: it names none and has no information.
+        answer_error: probability of a wrong answer [e].
+        max_joint: bound on the cells of one factor.
 
     Raises:
         LimitError: the answer couples factors into more than ``max_joint`` joint values; ask about fewer gaps at once.
     """
-    names = [name for name in query.gap_ids if any(g.id == name for g in belief.gaps)]
-    if reply not in (Reply.YES, Reply.NO) or len(names) < len(query.gap_ids):
+    names = set(query.gap_ids)
+    if part is None or not names <= {g.id for g in belief.gaps}:
         return Posterior(belief=belief, contradiction=False, expected=1.0)
     touched = [f for f in belief.factors if any(g.id in names for g in f.gaps)]
     joint = product(touched, max_joint)
-    truth = query.truths(joint)
-    agrees = truth if reply is Reply.YES else ~truth
-    mass = joint.probability * np.where(agrees, 1 - answer_error, answer_error)
+    wrong = answer_error / (query.part_count - 1)
+    mass = joint.probability * np.where(query.part_table(joint) == part, 1 - answer_error, wrong)
     expected = min(float(mass.sum()), 1.0)
-    if expected <= IMPOSSIBLE or (answer_error > 0 and expected < SURPRISE):
+    if expected <= ROUNDING or (answer_error > 0 and expected < SURPRISE):
         return Posterior(belief=belief, contradiction=True, expected=expected)
     after = Joint(gaps=joint.gaps, probability=_normalised(mass))
     rest = [f for f in belief.factors if f not in touched]
@@ -119,13 +125,13 @@ def extend(
 
 
 def _carried(factor: Joint, wanted: dict[str, KnowledgeGap]) -> Joint | None:
-    """What an old factor tells of the gaps that are still wanted; None where that is nothing."""
+    """What an old factor says of the gaps that are still wanted; None where that is nothing."""
     stay = [g.id for g in factor.gaps if g.id in wanted and set(wanted[g.id].values) <= set(g.values)]
     if not stay:
         return None
     carried = sliced(marginalise(factor, stay), {name: wanted[name] for name in stay})
     total = float(carried.probability.sum())
-    if total <= IMPOSSIBLE:
+    if total <= ROUNDING:
         return None
     return Joint(gaps=carried.gaps, probability=carried.probability / total)
 
@@ -138,7 +144,7 @@ def _group_factor(group: CorrelationGroup, known: dict[str, KnowledgeGap], max_j
     gaps = tuple(known[group.gaps[i]] for i in ordered)
     if math.prod(len(g.values) for g in gaps) > max_joint:
         raise LimitError(f"correlation group {group.gaps} has more than {max_joint} joint values; make it smaller")
-    if not math.isclose(sum(p for _, p in group.joint), 1, abs_tol=1e-6) or any(p < 0 for _, p in group.joint):
+    if not math.isclose(sum(p for _, p in group.joint), 1, abs_tol=SUM_TOLERANCE) or any(p < 0 for _, p in group.joint):
         raise MissionError(f"correlation group {group.gaps}: probabilities must not be below 0 and must sum to 1")
     for values, p in group.joint:
         if len(values) != len(group.gaps):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Final
+
 import numpy as np
 
 from mintpilot.core.gap import Belief
@@ -11,15 +13,16 @@ from mintpilot.core.tree import Certificate, Mint, StopReason
 from mintpilot.reasoning.classes import cheapest_under, class_entropy_bits
 from mintpilot.reasoning.situation import may_fail, succeeds
 
-_BECAUSE = {
+_BECAUSE: Final = {
     StopReason.NO_GAPS: "Nothing that is unknown bears on the task.",
     StopReason.ONE_CLASS: "One way to fly is right with {top:.1%} probability.",
     StopReason.GOOD_FOR_ALL: "One plan succeeds whatever the answers would be.",
-    StopReason.NO_GAIN: "No question that is left is worth asking (the best would tell {gain:.3f} bits).",
+    StopReason.NO_GAIN: "No question that is left is worth asking (the best has a gain of {gain:.3f} bits).",
     StopReason.BUDGET: "All {budget} questions that are allowed have been asked.",
     StopReason.SILENCE: "The operator does not answer.",
     StopReason.INFEASIBLE: "Nothing can be flown under anything that is still possible.",
     StopReason.NEVER_ASKS: "This method does not ask.",
+    StopReason.LIMIT: "A bound on the work was reached.",
 }
 
 

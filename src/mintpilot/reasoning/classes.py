@@ -12,13 +12,14 @@ from mintpilot.core.gap import ABSENT, PASSABLE, Assumptions, Belief, GapKind, J
 from mintpilot.core.geometry import Floats, Ints
 from mintpilot.core.mission import AskingSettings
 from mintpilot.core.plan import Plan
+from mintpilot.core.tolerances import DECIMALS
 from mintpilot.core.tree import LeafReason, Mint, Node, PlanClass
 from mintpilot.reasoning.entropy import entropy_bits
 from mintpilot.reasoning.tables import box, joint_over
 
 
 @dataclass(slots=True, kw_only=True, eq=False)
-class Draft:
+class NodeDraft:
     """A node that is still being worked on; the fields are those of `Node`."""
 
     given: Assumptions
@@ -28,12 +29,12 @@ class Draft:
     divergence_m: float | None = None
     entropy_bits: float | None = None
     branch_on: str = ""
-    children: list[Draft] = field(default_factory=list)
+    children: list[NodeDraft] = field(default_factory=list)
     leaf: LeafReason | None = None
     plan: Plan | None = None
 
 
-def finish(root: Draft, belief: Belief, axes: Collection[str], nodes: int, settings: AskingSettings) -> Mint:
+def finish(root: NodeDraft, belief: Belief, axes: Collection[str], nodes: int, settings: AskingSettings) -> Mint:
     """The tree as a value, its leaves sorted into classes, probabilities normalised over what was planned for."""
     leaves = [d for d in _drafts(root) if d.leaf is not None]
     joint = joint_over(belief, _with_demanded(root, leaves, belief, axes, settings), settings.max_joint)
@@ -102,7 +103,7 @@ def demands(plan: Plan) -> dict[str, str]:
 
 
 def _with_demanded(
-    root: Draft, leaves: list[Draft], belief: Belief, axes: Collection[str], settings: AskingSettings
+    root: NodeDraft, leaves: list[NodeDraft], belief: Belief, axes: Collection[str], settings: AskingSettings
 ) -> set[str]:
     """The axes and, as far as there is room, the other open gaps that leaf plans depend on.
 
@@ -119,7 +120,7 @@ def _with_demanded(
     return chosen
 
 
-def _classes(mass: list[float], leaves: list[Draft]) -> tuple[tuple[PlanClass, ...], Ints]:
+def _classes(mass: list[float], leaves: list[NodeDraft]) -> tuple[tuple[PlanClass, ...], Ints]:
     """Classes in their order, and the class of each leaf."""
     members: dict[str, list[int]] = {}
     for index, leaf in enumerate(leaves):
@@ -131,7 +132,9 @@ def _classes(mass: list[float], leaves: list[Draft]) -> tuple[tuple[PlanClass, .
         given = tuple(leaves[i].given for i in indices)
         cost = plan.cost_s if plan else float("inf")
         # Rounding must not decide the order of equally likely classes.
-        made.append((-round(probability, 9), cost, key, PlanClass(plan=plan, probability=probability, given=given)))
+        made.append(
+            (-round(probability, DECIMALS), cost, key, PlanClass(plan=plan, probability=probability, given=given))
+        )
     made.sort(key=lambda item: item[:3])
     class_of_leaf = np.zeros(len(leaves), np.int64)
     for number, (_, _, key, _) in enumerate(made):
@@ -139,17 +142,17 @@ def _classes(mass: list[float], leaves: list[Draft]) -> tuple[tuple[PlanClass, .
     return tuple(item[3] for item in made), class_of_leaf
 
 
-def _drafts(draft: Draft) -> Iterator[Draft]:
+def _drafts(draft: NodeDraft) -> Iterator[NodeDraft]:
     yield draft
     for child in draft.children:
         yield from _drafts(child)
 
 
-def _mass(joint: Joint, draft: Draft) -> float:
+def _mass(joint: Joint, draft: NodeDraft) -> float:
     return float(joint.probability[np.ix_(*box(joint, draft.given))].sum())
 
 
-def _frozen(draft: Draft, joint: Joint) -> Node:
+def _frozen(draft: NodeDraft, joint: Joint) -> Node:
     return Node(
         given=draft.given,
         probability=_mass(joint, draft),

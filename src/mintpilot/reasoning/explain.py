@@ -11,22 +11,22 @@ from mintpilot.core.geometry import Floats
 from mintpilot.core.mission import AskingSettings, CriticalityRule
 from mintpilot.core.plan import Plan
 from mintpilot.core.ports import ImpactMetric, PlanSpace
-from mintpilot.core.tree import GapAccount, Mint, Node
+from mintpilot.core.tolerances import DECIMALS, TOLERANCE
+from mintpilot.core.tree import GapExplanation, Mint, Node
 from mintpilot.reasoning.classes import class_entropy_bits, nodes_of
 from mintpilot.reasoning.entropy import entropy_bits
 from mintpilot.reasoning.metrics import expected_regret_s
 from mintpilot.reasoning.situation import regret_matrix
-from mintpilot.reasoning.tree import TOLERANCE
 
 
-def gap_accounts(
+def explain_gaps(
     space: PlanSpace,
     belief: Belief,
     mint: Mint,
     settings: AskingSettings,
     metric: ImpactMetric,
-) -> tuple[GapAccount, ...]:
-    """The account of every gap of the belief, by id, while it is not decided yet whether it is asked about.
+) -> tuple[GapExplanation, ...]:
+    """The explanation of every gap of the belief, by id, while it is not decided yet whether it is asked about.
 
     Costs compare the best plans under the gap's best and worst value, all else as at the likeliest node of the tree
     that branches on it (at the root for gaps that no node branches on).
@@ -50,7 +50,7 @@ def gap_accounts(
         set_aside = _set_aside(best, worst, settings)
         why = f"Matters: {figures}." if relevant else f"Does not matter: {figures}{set_aside}."
         made.append(
-            GapAccount(
+            GapExplanation(
                 gap_id=gap.id,
                 description=gap.description,
                 kind=gap.kind.value,
@@ -73,7 +73,7 @@ def gap_accounts(
 def _branching_node(root: Node, gap_id: str) -> Node | None:
     """The likeliest node that branches on that gap; the first one among equals."""
     found = [n for n in nodes_of(root) if n.branch_on == gap_id]
-    return max(found, key=lambda n: round(n.probability, 9), default=None)
+    return max(found, key=lambda n: round(n.probability, DECIMALS), default=None)
 
 
 def _extremes(space: PlanSpace, given: Assumptions, gap: KnowledgeGap) -> tuple[Plan | None, Plan | None]:
@@ -86,7 +86,7 @@ def _extremes(space: PlanSpace, given: Assumptions, gap: KnowledgeGap) -> tuple[
 
 
 def _worth(mint: Mint, regret_s: Floats, gap_id: str) -> tuple[float, float]:
-    """Bits that the best cut 'gap = value' tells of the plan class, and seconds of regret that the value saves."""
+    """Gain, bits, of the best query 'gap = value', and seconds of regret that knowing the value saves."""
     if all(g.id != gap_id for g in mint.belief.gaps):
         return 0.0, 0.0
     axis, support = mint.belief.axis(gap_id), mint.support
@@ -102,17 +102,17 @@ def _worth(mint: Mint, regret_s: Floats, gap_id: str) -> tuple[float, float]:
     return gain, max(0.0, expected_regret_s(regret_s, p) - after)
 
 
-def decided(account: GapAccount, asked: bool) -> GapAccount:
+def decided(explanation: GapExplanation, asked: bool) -> GapExplanation:
     """The explanation once it is known whether the gap was asked about."""
-    if not account.figures:
-        return replace(account, asked=asked)
+    if not explanation.figures:
+        return replace(explanation, asked=asked)
     if asked:
-        why = f"Asked: {account.figures}."
-    elif account.relevant:
-        why = f"Not asked: {account.figures}, but other answers settled the plan."
+        why = f"Asked: {explanation.figures}."
+    elif explanation.relevant:
+        why = f"Not asked: {explanation.figures}, but other answers settled the plan."
     else:
-        why = f"Not asked: {account.figures}{account.set_aside}."
-    return replace(account, asked=asked, why=why)
+        why = f"Not asked: {explanation.figures}{explanation.set_aside}."
+    return replace(explanation, asked=asked, why=why)
 
 
 def _figures(gap: KnowledgeGap, best: Plan | None, worst: Plan | None, divergence_m: float | None, bits: float) -> str:

@@ -9,10 +9,8 @@ import numpy as np
 from mintpilot.core.gap import PASSABLE, Assumptions, Belief, GapKind
 from mintpilot.core.mission import AskingSettings
 from mintpilot.core.plan import Plan
+from mintpilot.core.tolerances import ROUNDING
 from mintpilot.reasoning.entropy import entropy_bits
-
-ROUNDING = 1e-12
-"""A posterior that is 1 but for rounding counts as 1."""
 
 
 def known_passable(gap_id: str, belief: Belief, confirmed: Collection[str], settings: AskingSettings) -> bool:

@@ -18,13 +18,12 @@ from mintpilot.core.gap import Assumptions, Belief, GapKind, KnowledgeGap
 from mintpilot.core.mission import AskingSettings, CriticalityRule
 from mintpilot.core.plan import Plan
 from mintpilot.core.ports import ImpactMetric, PlanSpace
+from mintpilot.core.tolerances import DECIMALS, TOLERANCE
 from mintpilot.core.tree import LeafReason, Mint
-from mintpilot.reasoning.classes import Draft, finish
+from mintpilot.reasoning.classes import NodeDraft, finish
 from mintpilot.reasoning.entropy import entropy_bits
 from mintpilot.reasoning.support import clear_targets, conditional, narrow
 
-TOLERANCE = 1e-9
-"""Costs and distances closer than this count as equal."""
 _RANK = {GapKind.TARGET: 0, GapKind.PRESENCE: 1, GapKind.OBSTACLE: 2, GapKind.VALUE: 3}
 
 
@@ -65,8 +64,8 @@ class _Growth:
         self.gaps = {g.id: g for g in self.belief.gaps}
 
     def run(self) -> Mint:
-        root = Draft(given=narrow(self.belief, Assumptions(), self.settings.floor), probability=1.0)
-        queue: list[tuple[float, int, Draft]] = [(-1.0, 0, root)]
+        root = NodeDraft(given=narrow(self.belief, Assumptions(), self.settings.floor), probability=1.0)
+        queue: list[tuple[float, int, NodeDraft]] = [(-1.0, 0, root)]
         pushed = 0
         while queue:
             _, _, node = heapq.heappop(queue)
@@ -75,7 +74,7 @@ class _Growth:
                 heapq.heappush(queue, (-child.probability, pushed, child))
         return finish(root, self.belief, self.axes, self.nodes, self.settings)
 
-    def expand(self, node: Draft) -> list[Draft]:
+    def expand(self, node: NodeDraft) -> list[NodeDraft]:
         """Plans at a node and makes it a leaf, or gives its children (steps 1 to 4)."""
         clear = clear_targets(self.belief, node.given, self.settings.goal_entropy_bits)
         given = node.given
@@ -94,7 +93,7 @@ class _Growth:
             return _leaf(node, LeafReason.CAUTIOUS_IS_GOOD_ENOUGH, sure)
         return self.branch(node, best)
 
-    def good_enough(self, node: Draft, best: Plan, sure: Plan) -> bool:
+    def good_enough(self, node: NodeDraft, best: Plan, sure: Plan) -> bool:
         """Whether the plan that always succeeds is within the tolerances of the rule (step 2)."""
         pair = (best.signature, sure.signature)
         if pair not in self.distances:
@@ -106,7 +105,7 @@ class _Growth:
             return True
         return node.divergence_m <= self.settings.delta_d_m + TOLERANCE
 
-    def branch(self, node: Draft, best: Plan) -> list[Draft]:
+    def branch(self, node: NodeDraft, best: Plan) -> list[NodeDraft]:
         """One child per value that is possible, on the first gap in order that the bounds have room for (step 4)."""
         for gap, bits in self.critical(node, best):
             if node.entropy_bits is None and gap.kind is GapKind.TARGET:
@@ -121,7 +120,7 @@ class _Growth:
             return children
         return _leaf(node, LeafReason.NOT_EXPANDED, node.cautious)
 
-    def critical(self, node: Draft, best: Plan) -> list[tuple[KnowledgeGap, float]]:
+    def critical(self, node: NodeDraft, best: Plan) -> list[tuple[KnowledgeGap, float]]:
         """The gaps that the plan relies on with their entropies, in the order in which branching prefers them."""
         found = []
         for name in sorted(best.relies_on):
@@ -130,19 +129,19 @@ class _Growth:
             gap = self.gaps[name]
             found.append((gap, entropy_bits(conditional(self.belief.factor(name), node.given, gap))))
         # Entropies that differ by rounding only must not decide.
-        return sorted(found, key=lambda item: (_RANK[item[0].kind], -round(item[1], 9), item[0].id))
+        return sorted(found, key=lambda item: (_RANK[item[0].kind], -round(item[1], DECIMALS), item[0].id))
 
-    def children(self, node: Draft, gap: KnowledgeGap) -> list[Draft]:
+    def children(self, node: NodeDraft, gap: KnowledgeGap) -> list[NodeDraft]:
         """A draft for each value of the gap that is still possible."""
         probability = conditional(self.belief.factor(gap.id), node.given, gap)
         made = []
         for value in node.given.possible(gap):
             given = narrow(self.belief, node.given.assume(gap.id, (value,)), self.settings.floor, changed=gap.id)
             share = float(probability[gap.values.index(value)])
-            made.append(Draft(given=given, probability=node.probability * share))
+            made.append(NodeDraft(given=given, probability=node.probability * share))
         return made
 
 
-def _leaf(node: Draft, reason: LeafReason, plan: Plan | None) -> list[Draft]:
+def _leaf(node: NodeDraft, reason: LeafReason, plan: Plan | None) -> list[NodeDraft]:
     node.leaf, node.plan = reason, plan
     return []

@@ -18,7 +18,7 @@ from mintpilot.core.gap import GapKind, KnowledgeGap
 from mintpilot.core.mission import Outcome
 from mintpilot.core.semantic_map import SemanticMap
 from mintpilot.core.trajectory import FlightEnd
-from mintpilot.core.tree import Certificate, GapAccount
+from mintpilot.core.tree import Certificate, GapExplanation
 from mintpilot.recording.history import History
 from mintpilot.recording.record import (
     CertificateRecord,
@@ -34,7 +34,7 @@ from mintpilot.recording.record import (
     ValueRecord,
 )
 from mintpilot.recording.tree_data import Told, class_records, tree_record
-from mintpilot.recording.words import say, say_query
+from mintpilot.recording.words import say, say_evidence, say_query
 
 _UNDECIDED = "The mission ended before this was decided."
 
@@ -124,23 +124,23 @@ def flight_record(legs: Sequence[LegFlown]) -> FlightRecord:
 def gap_records(
     gaps: Iterable[KnowledgeGap], chosen: Iterable[PlanChosen], asked: frozenset[str]
 ) -> tuple[GapRecord, ...]:
-    """Every gap with its latest account; what was once asked keeps the account that says so."""
-    accounts: dict[str, GapAccount] = {}
+    """Every gap with its latest explanation; what was once asked keeps the explanation that says so."""
+    explanations: dict[str, GapExplanation] = {}
     for choice in chosen:
-        for account in choice.accounts:
-            before = accounts.get(account.gap_id)
-            if before is None or account.asked or not before.asked:
-                accounts[account.gap_id] = account
+        for explanation in choice.explanations:
+            before = explanations.get(explanation.gap_id)
+            if before is None or explanation.asked or not before.asked:
+                explanations[explanation.gap_id] = explanation
     known = {gap.id: gap for gap in gaps}
     return tuple(
-        _gap(gap_id, known.get(gap_id), accounts.get(gap_id), gap_id in asked)
-        for gap_id in dict.fromkeys((*known, *accounts))
+        _gap(gap_id, known.get(gap_id), explanations.get(gap_id), gap_id in asked)
+        for gap_id in dict.fromkeys((*known, *explanations))
     )
 
 
-def _gap(gap_id: str, gap: KnowledgeGap | None, account: GapAccount | None, asked: bool) -> GapRecord:
-    description = gap.description if gap else account.description if account else gap_id
-    kind = gap.kind if gap else GapKind(account.kind) if account and account.kind in set(GapKind) else None
+def _gap(gap_id: str, gap: KnowledgeGap | None, explanation: GapExplanation | None, asked: bool) -> GapRecord:
+    description = gap.description if gap else explanation.description if explanation else gap_id
+    kind = gap.kind if gap else GapKind(explanation.kind) if explanation and explanation.kind in set(GapKind) else None
     values = zip(gap.values, gap.prior, strict=True) if gap else ()
     return GapRecord(
         id=gap_id,
@@ -148,15 +148,15 @@ def _gap(gap_id: str, gap: KnowledgeGap | None, account: GapAccount | None, aske
         subject=gap.subject if gap else "",
         description=description,
         values=tuple(ValueRecord(value=v, prior=p, means=say(gap, [v]) if gap else v) for v, p in values),
-        asked=asked or bool(account and account.asked),
-        relevant=account.relevant if account else None,
-        why=account.why if account else _UNDECIDED,
-        cost_if_favourable_s=account.cost_if_favourable_s if account else None,
-        cost_if_unfavourable_s=account.cost_if_unfavourable_s if account else None,
-        divergence_m=account.divergence_m if account else None,
-        entropy_bits=account.entropy_bits if account else None,
-        gain_bits=account.gain_bits if account else None,
-        regret_saved_s=account.regret_saved_s if account else None,
+        asked=asked or bool(explanation and explanation.asked),
+        relevant=explanation.relevant if explanation else None,
+        why=explanation.why if explanation else _UNDECIDED,
+        cost_if_favourable_s=explanation.cost_if_favourable_s if explanation else None,
+        cost_if_unfavourable_s=explanation.cost_if_unfavourable_s if explanation else None,
+        divergence_m=explanation.divergence_m if explanation else None,
+        entropy_bits=explanation.entropy_bits if explanation else None,
+        gain_bits=explanation.gain_bits if explanation else None,
+        regret_saved_s=explanation.regret_saved_s if explanation else None,
     )
 
 
@@ -169,19 +169,22 @@ def _question(asked: Asked, gaps: Sequence[KnowledgeGap]) -> QuestionRecord:
         gain_bits=scored.gain_bits,
         score=scored.score,
         regret_saved_s=scored.regret_saved_s,
-        yes_probability=scored.yes_probability,
+        reply_probabilities=scored.reply_probabilities,
+        replies=tuple(question.query.part_words(part) for part in range(question.query.part_count)),
         yes_means=question.yes_means,
         no_means=question.no_means,
+        option_means=question.option_means,
         worded_by=question.worded_by,
         wording_s=asked.wording_s,
         attempt=question.attempt,
         reply=answer.reply,
+        option=answer.option,
         answer_text=answer.text,
         latency_s=answer.latency_s,
         first_text=asked.first_text,
         better_s=asked.better_s,
         understood_by=answer.understood_by,
-        also=tuple(f"{'' if yes else 'not: '}{say_query(cut, gaps)}" for cut, yes in answer.also),
+        also=tuple(say_evidence(one, gaps) for one in answer.also),
         proposed_by=scored.proposed_by,
     )
 

@@ -20,7 +20,7 @@ from mintpilot.core.events import (
     Timed,
 )
 from mintpilot.core.gap import KnowledgeGap
-from mintpilot.core.query import Query, Reply
+from mintpilot.core.query import Evidence
 from mintpilot.core.semantic_map import SemanticMap
 from mintpilot.core.tree import Mint
 
@@ -92,13 +92,13 @@ class History:
         return frozenset(gap for asked in self.asked for gap in asked.question.query.gap_ids)
 
     @property
-    def replies(self) -> tuple[tuple[Query, bool], ...]:
-        """The cuts that were answered with yes or no, in order, with what was said beyond them."""
+    def replies(self) -> tuple[Evidence, ...]:
+        """The queries that were answered, in order, with what was said beyond them."""
         return tuple(
             reply
             for a in self.asked
-            if a.answer.reply in (Reply.YES, Reply.NO)
-            for reply in ((a.question.query, a.answer.reply is Reply.YES), *a.answer.also)
+            if a.answer.part is not None
+            for reply in (Evidence(query=a.question.query, part=a.answer.part), *a.answer.also)
         )
 
     @property

@@ -75,13 +75,22 @@ class QuestionRecord(Part):
     gain_bits: Figure
     score: Figure
     regret_saved_s: Figure
-    yes_probability: Figure
+    reply_probabilities: tuple[float, ...] = ()
+    """With which each reply was expected, in the order of ``replies``; empty in records of older versions."""
+    replies: tuple[str, ...] = ("yes", "no")
+    """What could be answered, besides "don't know": ``yes`` and ``no``, or the options of a choice."""
+    yes_probability: Figure = None
+    """In records of older versions, instead of ``reply_probabilities``."""
     yes_means: str
     no_means: str
+    option_means: tuple[str, ...] = ()
+    """Of a choice: the consequence of each reply."""
     worded_by: str
     wording_s: Figure
     attempt: int
     reply: Reply
+    option: int | None = None
+    """Which of ``replies`` was chosen, from 0; null where the question was no choice."""
     answer_text: str
     """As it was given: data, never an instruction."""
     latency_s: Figure

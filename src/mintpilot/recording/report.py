@@ -15,14 +15,30 @@ from pydantic import JsonValue
 from mintpilot.core.mission import Outcome
 from mintpilot.core.query import Reply
 from mintpilot.recording.frames import FrameStore, crop_jpeg
-from mintpilot.recording.record import GapRecord, MissionRecord, SeenRecord
+from mintpilot.recording.record import GapRecord, MissionRecord, QuestionRecord, SeenRecord
 from mintpilot.recording.tree_drawing import percent
 from mintpilot.recording.tree_svg import tree_svg
-from mintpilot.recording.words import OUTCOME_WORDS, STOP_WORDS
+from mintpilot.recording.words import OUTCOME_WORDS
 
 MAX_PICTURES = 18
 """Close-ups shown; what bears on a gap comes first."""
-REPLY_WORDS = {Reply.YES: "Yes", Reply.NO: "No", Reply.UNSURE: "Don't know", Reply.TIMEOUT: "No answer"}
+_REPLY_WORDS = {Reply.YES: "Yes", Reply.NO: "No", Reply.UNSURE: "Don't know", Reply.TIMEOUT: "No answer"}
+
+
+def reply_words(question: QuestionRecord) -> str:
+    """The reply in a word or two: ``Yes``, the label of an option."""
+    if question.option is not None:
+        return question.replies[question.option]
+    return _REPLY_WORDS[question.reply]
+
+
+def consequence(question: QuestionRecord) -> str:
+    """What the reply did to the flight; empty for one that named no part of the query."""
+    if question.option is not None:
+        return question.option_means[question.option] if question.option < len(question.option_means) else ""
+    return {Reply.YES: question.yes_means, Reply.NO: question.no_means}.get(question.reply, "")
+
+
 """Replies as a person would say them."""
 _KNOWN_WORDS = {
     ("region", "open"): "not known whether it can be flown through",
@@ -65,8 +81,8 @@ def report_html(record: MissionRecord, folder: Path) -> str:
         gaps=weightiest_first(record.gaps),
         tone="good" if record.outcome is Outcome.SUCCESS else "stopped" if record.outcome in _STOPPED else "bad",
         headline=OUTCOME_WORDS[record.outcome],
-        stop_words=STOP_WORDS[record.certificate.reason] if record.certificate else "",
-        reply_words=REPLY_WORDS,
+        reply_words=reply_words,
+        consequence=consequence,
         plot=_data_uri(plot.read_bytes(), "image/svg+xml") if plot.is_file() else "",
         tree=Markup(tree_svg(record.tree)) if record.tree else "",  # made here of escaped text
         pictures=pictures(record, folder),

@@ -12,9 +12,9 @@ from rich.text import Text
 from mintpilot.core.mission import Outcome
 from mintpilot.core.query import Reply
 from mintpilot.recording.record import GapRecord, MissionRecord, QuestionRecord
-from mintpilot.recording.report import REPLY_WORDS, number, weightiest_first
+from mintpilot.recording.report import consequence, number, reply_words, weightiest_first
 from mintpilot.recording.tree_drawing import tree_text
-from mintpilot.recording.words import OUTCOME_WORDS, STOP_WORDS, printable
+from mintpilot.recording.words import OUTCOME_WORDS, printable
 
 WIDTH = 100
 """Columns that the report fits into."""
@@ -87,10 +87,10 @@ def _asked(record: MissionRecord) -> RenderableType:
 
 
 def _question(question: QuestionRecord) -> Iterator[Text]:
-    said = REPLY_WORDS[question.reply]
-    consequence = {Reply.YES: question.yes_means, Reply.NO: question.no_means}.get(question.reply, "")
+    said = reply_words(question)
+    means = consequence(question)
     yield _plain(f"? {question.text}", "bold")
-    arrow = f" → {printable(consequence)}" if consequence else ""
+    arrow = f" → {printable(means)}" if means else ""
     facts = f"  (after {number(question.latency_s, 's')}, {number(question.gain_bits, 'bit', 2)})"
     yield Text.assemble("  ", (said, _STYLES[question.reply]), arrow, (facts, "dim"))
     for also in question.also:
@@ -103,7 +103,7 @@ def _decided(record: MissionRecord) -> RenderableType:
         tree = tree_text(record.tree, max_nodes=15).splitlines()
         lines.extend(Text(line, no_wrap=True, overflow="ellipsis") for line in tree)
     if record.certificate is not None:
-        lines.append(_plain(f"{STOP_WORDS[record.certificate.reason]} {record.certificate.text}"))
+        lines.append(_plain(record.certificate.text))
     return _section("How it decided", lines or [Text("It was not decided.")])
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from mintpilot.core.gap import Assumptions, KnowledgeGap
 from mintpilot.core.plan import Plan
-from mintpilot.core.query import Combine, Query
+from mintpilot.core.query import NO_PART, Combine, Evidence, Literal
 from mintpilot.core.tree import Mint, Node, PlanClass
 from mintpilot.recording.record import PlanClassRecord, TreeRecord
 from mintpilot.recording.words import say, say_assumptions
@@ -24,8 +24,8 @@ _MAX_WORDS = 6
 class Told:
     """What became of the tree, for marking it."""
 
-    replies: tuple[tuple[Query, bool], ...] = ()
-    """Cuts that were answered, with the answer."""
+    replies: tuple[Evidence, ...] = ()
+    """Queries that were answered, with the answer."""
     asked: frozenset[str] = frozenset()
     """Ids of the gaps that were asked about."""
     flown: str = ""
@@ -84,7 +84,7 @@ def _node(
         branch_on=node.branch_on,
         branch_words=branch.description if branch else node.branch_on,
         asked=node.branch_on in told.asked,
-        ruled_out=any(_truth(query, node.given) is (not reply) for query, reply in told.replies),
+        ruled_out=any(_contradicts(reply, node.given) for reply in told.replies),
         leaf=node.leaf,
         cost_s=_cost(plan),
         plan=plan.signature if plan else "",
@@ -102,17 +102,26 @@ def _news(given: Assumptions, above: Assumptions, gaps: Mapping[str, KnowledgeGa
     return "; ".join(clauses) or "nothing assumed yet"
 
 
-def _truth(query: Query, given: Assumptions) -> bool | None:
-    """The answer to the cut under the assumptions; None where they leave it open."""
+def _contradicts(reply: Evidence, given: Assumptions) -> bool:
+    """Whether the assumptions rule out the part of the query that was named."""
+    query, part = reply.query, reply.part
+    if not query.is_choice:
+        return _truth(query.literals, query.combine, given) is (part == NO_PART)
+    truths = [_truth(option.literals, option.combine, given) for option in query.options]
+    return truths[part] is False if part < len(truths) else True in truths
+
+
+def _truth(literals: Iterable[Literal], combine: Combine, given: Assumptions) -> bool | None:
+    """Whether the literals hold under the assumptions; None where these leave it open."""
     possible = dict(given.items)
     truths: list[bool | None] = []
-    for literal in query.literals:
+    for literal in literals:
         values = possible.get(literal.gap)
         if values is None or (values & literal.values and not values <= literal.values):
             truths.append(None)
         else:
             truths.append(values <= literal.values)
-    decisive = query.combine is Combine.ANY
+    decisive = combine is Combine.ANY
     if decisive in truths:
         return decisive
     return None if None in truths else not decisive

@@ -6,8 +6,8 @@ from collections.abc import Iterable
 
 from mintpilot.core.gap import BLOCKED, PASSABLE, PRESENT, Assumptions, GapKind, KnowledgeGap
 from mintpilot.core.mission import Outcome
-from mintpilot.core.query import Combine, Query
-from mintpilot.core.tree import LeafReason, StopReason
+from mintpilot.core.query import YES_PART, Combine, Evidence, Query
+from mintpilot.core.tree import LeafReason
 
 LEAF_WORDS: dict[LeafReason, str] = {
     LeafReason.RELIES_ON_NOTHING: "depends on nothing unknown",
@@ -17,18 +17,6 @@ LEAF_WORDS: dict[LeafReason, str] = {
     LeafReason.NOT_EXPANDED: "not worked out any further",
 }
 """Why a branch of the tree ends."""
-
-STOP_WORDS: dict[StopReason, str] = {
-    StopReason.NO_GAPS: "Nothing that bears on the task is unknown.",
-    StopReason.ONE_CLASS: "One way to fly is as good as certain.",
-    StopReason.GOOD_FOR_ALL: "One way to fly is good whatever is still unknown.",
-    StopReason.NO_GAIN: "No further question would change the flight.",
-    StopReason.BUDGET: "All questions that were allowed have been asked.",
-    StopReason.SILENCE: "Nobody answered.",
-    StopReason.INFEASIBLE: "Nothing can be flown, whatever the answers would be.",
-    StopReason.NEVER_ASKS: "This strategy does not ask.",
-}
-"""Why the asking stopped."""
 
 OUTCOME_WORDS: dict[Outcome, str] = {
     Outcome.SUCCESS: "Mission accomplished",
@@ -72,13 +60,22 @@ def say_assumptions(given: Assumptions, gaps: Iterable[KnowledgeGap]) -> str:
 
 
 def say_query(query: Query, gaps: Iterable[KnowledgeGap]) -> str:
-    """What a Yes to the cut says; parts about gaps that are not given are said by their ids."""
+    """What a Yes to the query says, or what a choice is among; gaps that are not given are named by their ids."""
+    if query.is_choice:
+        return f"which of: {', '.join(query.part_words(part) for part in range(query.part_count))}"
     known = {gap.id: gap for gap in gaps}
     clauses = [
         say(known[x.gap], x.values) if x.gap in known else f"{x.gap}: {' or '.join(sorted(x.values))}"
         for x in query.literals
     ]
     return (" and " if query.combine is Combine.ALL else " or ").join(clauses)
+
+
+def say_evidence(evidence: Evidence, gaps: Iterable[KnowledgeGap]) -> str:
+    """What was said of a query, in plain words."""
+    if evidence.query.is_choice:
+        return evidence.query.part_words(evidence.part)
+    return f"{'' if evidence.part == YES_PART else 'not: '}{say_query(evidence.query, gaps)}"
 
 
 def printable(text: str) -> str:

@@ -8,9 +8,9 @@ from mintpilot.core.gap import PASSABLE, KnowledgeGap
 from mintpilot.core.plan import Plan
 from mintpilot.core.ports import Ask, Decision, Situation
 from mintpilot.core.query import Literal, Query, Saying, SayingKind
+from mintpilot.core.tolerances import TOLERANCE
 from mintpilot.core.tree import Mint, ScoredQuery, StopReason
 from mintpilot.reasoning.safety import unknown_regions
-from mintpilot.reasoning.tree import TOLERANCE
 from mintpilot.strategies.flying import cautious_plan, fly, questions_left
 
 MAX_CONFIRMATIONS = 50
@@ -43,18 +43,19 @@ def confirm_or_avoid(situation: Situation, mint: Mint, plan: Plan, reason: StopR
     query = min(queries, key=lambda q: (belief.probability_of(q.gap_ids[0], PASSABLE), q.id))
     yes = belief.probability_of(query.gap_ids[0], PASSABLE)
     error = settings.answer_error
+    heard = (1 - error) * yes + error * (1 - yes)
     scored = ScoredQuery(
         query=query,
         score=worth_s,
         gain_bits=0.0,
         regret_saved_s=chance * saving_s,
-        yes_probability=(1 - error) * yes + error * (1 - yes),
+        reply_probabilities=(heard, 1 - heard),
     )
     return Ask(scored=scored, mint=mint)
 
 
 def passable_query(gap: KnowledgeGap) -> Query:
-    """The cut that asks for an explicit yes for one region."""
+    """The query that asks for an explicit yes for one region."""
     saying = Saying(kind=SayingKind.VALUE, value=PASSABLE)
     return Query(literals=(Literal(gap=gap.id, values=frozenset({PASSABLE}), saying=saying),))
 
@@ -74,6 +75,6 @@ def confirmations(passable: float, situation: Situation) -> int:
 
 
 def _may_ask(query: Query, situation: Situation) -> bool:
-    """A cut that was given up is not asked again, nor one that was answered by somebody who is never wrong."""
-    answered = {asked.id for asked, _ in situation.asked}
+    """A query that was given up is not asked again, nor one that was answered by somebody who is never wrong."""
+    answered = {one.query.id for one in situation.asked}
     return query.id not in situation.withdrawn and (situation.settings.answer_error > 0 or query.id not in answered)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from mintpilot.core.errors import InputError
 from mintpilot.core.gap import KnowledgeGap
 from mintpilot.core.ports import Ask, Decision, Situation, Strategy
+from mintpilot.core.tolerances import DECIMALS
 from mintpilot.core.tree import ScoredQuery, StopReason
 from mintpilot.reasoning.entropy import entropy_bits
 from mintpilot.strategies.exhaustive import best_about
@@ -27,7 +28,7 @@ class EntropyThresholdStrategy(Strategy):
         self._threshold_bits = threshold_bits
 
     def decide(self, situation: Situation) -> Decision:
-        """Asks the cut that tells most of the most uncertain gap, or flies what loses least on average."""
+        """Asks the query with the highest gain on the most uncertain gap, or flies what loses least on average."""
         mint = tree_of(situation)
         if situation.silent:
             return fly_cautiously(situation, mint, StopReason.SILENCE)
@@ -43,7 +44,7 @@ class EntropyThresholdStrategy(Strategy):
             return entropy_bits(situation.belief.marginal(gap.id))
 
         unsure = [gap for gap in situation.belief.gaps if entropy(gap) > self._threshold_bits]
-        for gap in sorted(unsure, key=lambda gap: (-round(entropy(gap), 9), gap.id)):
+        for gap in sorted(unsure, key=lambda gap: (-round(entropy(gap), DECIMALS), gap.id)):
             scored = best_about(gap, situation)
             if scored is not None:
                 return scored

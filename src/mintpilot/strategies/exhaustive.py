@@ -7,8 +7,10 @@ import numpy as np
 from mintpilot.core.gap import PASSABLE, GapKind, KnowledgeGap
 from mintpilot.core.ports import Ask, Decision, Situation, Strategy
 from mintpilot.core.query import Query
+from mintpilot.core.tolerances import DECIMALS, TOLERANCE
 from mintpilot.core.tree import Mint, ScoredQuery, StopReason
 from mintpilot.elicitation.candidates import gap_literals
+from mintpilot.elicitation.objectives.channel import noise_bits
 from mintpilot.elicitation.phrasing_cost import phrasing_cost
 from mintpilot.reasoning.entropy import entropy_bits
 from mintpilot.reasoning.safety import known_passable
@@ -19,7 +21,7 @@ class ExhaustiveStrategy(Strategy):
     """One gap after the other, by id, until each is known; then flies."""
 
     def decide(self, situation: Situation) -> Decision:
-        """Asks about the first gap that is not known; a target gap by the cuts that halve its candidates best."""
+        """Asks about the first gap that is not known; a target gap by the queries that halve its candidates best."""
         mint = tree_of(situation)
         if situation.silent:
             return fly_cautiously(situation, mint, StopReason.SILENCE)
@@ -34,25 +36,34 @@ class ExhaustiveStrategy(Strategy):
 
 
 def best_about(gap: KnowledgeGap, situation: Situation) -> ScoredQuery | None:
-    """The cut about that gap alone that tells most of it; None where none may be asked or tells anything."""
-    answered = {query.id for query, _ in situation.asked} if situation.settings.answer_error == 0 else set()
-    error, p = situation.settings.answer_error, situation.belief.marginal(gap.id)
+    """The query about that gap alone with the highest gain on it; None where none may be asked or has a gain."""
+    queries = [Query(literals=(literal,)) for literal in gap_literals(gap, situation.problem.start_m)]
+    answered = {one.query.id for one in situation.asked} if situation.settings.answer_error == 0 else set()
     found = []
-    for literal in gap_literals(gap, situation.problem.start_m):
-        query = Query(literals=(literal,))
+    for query in queries:
         if query.id in situation.withdrawn or query.id in answered:
             continue
-        yes = float(sum(q for v, q in zip(gap.values, p, strict=True) if v in literal.values))
-        heard = (1 - error) * yes + error * (1 - yes)
-        gain = entropy_bits([heard, 1 - heard]) - entropy_bits([error, 1 - error])
+        scored = scored_alone(query, gap, situation)
         # A region that is surely passable still needs its explicit yes.
-        if gain > 1e-9 or gap.kind is GapKind.OBSTACLE:
-            found.append(
-                ScoredQuery(
-                    query=query, score=gain, gain_bits=max(gain, 0.0), regret_saved_s=0.0, yes_probability=heard
-                )
-            )
-    return min(found, key=lambda s: (-round(s.score, 9), *phrasing_cost(s.query)), default=None)
+        if scored.score > TOLERANCE or gap.kind is GapKind.OBSTACLE:
+            found.append(scored)
+    return min(found, key=lambda s: (-round(s.score, DECIMALS), *phrasing_cost(s.query)), default=None)
+
+
+def scored_alone(query: Query, gap: KnowledgeGap, situation: Situation) -> ScoredQuery:
+    """A query about one gap alone with its information gain on that gap."""
+    error, count = situation.settings.answer_error, query.part_count
+    parts = query.parts_over(((gap.id, gap.values),))
+    shares = np.bincount(parts, weights=situation.belief.marginal(gap.id), minlength=count)
+    named = (1 - error) * shares + error / (count - 1) * (1 - shares)
+    gain = entropy_bits(named) - noise_bits(count, error)
+    return ScoredQuery(
+        query=query,
+        score=gain,
+        gain_bits=max(gain, 0.0),
+        regret_saved_s=0.0,
+        reply_probabilities=tuple(named.tolist()),
+    )
 
 
 def is_known(gap: KnowledgeGap, situation: Situation) -> bool:
@@ -60,7 +71,7 @@ def is_known(gap: KnowledgeGap, situation: Situation) -> bool:
     settings, p = situation.settings, situation.belief.marginal(gap.id)
     if gap.kind is GapKind.OBSTACLE:
         blocked = 1 - situation.belief.probability_of(gap.id, PASSABLE)
-        asked = any(gap.id in query.gap_ids for query, _ in situation.asked)
+        asked = any(gap.id in one.query.gap_ids for one in situation.asked)
         return known_passable(gap.id, situation.belief, situation.confirmed, settings) or (
             asked and blocked >= 1 - settings.alpha_safe
         )

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterable
+
 import numpy as np
 
 from mintpilot.core.plan import Plan
 from mintpilot.core.ports import Fly, Situation
+from mintpilot.core.query import Query
 from mintpilot.core.tree import Mint, StopReason
 from mintpilot.reasoning.certificate import certify
 from mintpilot.reasoning.classes import demands
@@ -74,6 +78,17 @@ def fly(
 def fly_cautiously(situation: Situation, mint: Mint, reason: StopReason) -> Fly:
     """The decision to fly the cautious plan, or to stay safe where there is none."""
     return fly(situation, mint, cautious_plan(situation), reason)
+
+
+def answerable(queries: Iterable[Query], situation: Situation) -> tuple[Query, ...]:
+    """The queries whose answers the belief can take in: they couple at most ``settings.max_joint`` joint values."""
+    factors = {gap.id: number for number, factor in enumerate(situation.belief.factors) for gap in factor.gaps}
+    sizes = [factor.probability.size for factor in situation.belief.factors]
+
+    def coupled(query: Query) -> int:
+        return math.prod(sizes[number] for number in {factors[name] for name in query.gap_ids})
+
+    return tuple(query for query in queries if coupled(query) <= situation.settings.max_joint)
 
 
 def questions_left(situation: Situation) -> int:

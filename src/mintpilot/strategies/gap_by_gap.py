@@ -8,10 +8,10 @@ from __future__ import annotations
 
 from mintpilot.core.gap import Assumptions, GapKind, KnowledgeGap
 from mintpilot.core.ports import Ask, Decision, Situation, Strategy
+from mintpilot.core.tolerances import TOLERANCE
 from mintpilot.core.tree import StopReason
 from mintpilot.reasoning.entropy import entropy_bits
 from mintpilot.reasoning.support import narrow
-from mintpilot.reasoning.tree import TOLERANCE
 from mintpilot.strategies.exhaustive import best_about, is_known
 from mintpilot.strategies.flying import best_safe_plan, fly, fly_cautiously, questions_left, tree_of
 

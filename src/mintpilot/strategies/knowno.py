@@ -5,7 +5,7 @@ probability, so that the method is compared by *when* it asks, with the same kno
 nonconformity of the true class, one minus its probability, has the quantile q; the prediction set of a new world is
 every class of at least 1 - q, which holds the true one with the coverage that q was chosen for. One member: fly it.
 More: ask. The person there picks from the set; with yes/no questions only, the gaps that set the classes apart are
-asked about one by one, in order of their ids: the method has no notion of which answer tells most.
+asked about one by one, in order of their ids: the method has no notion of information gain.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from __future__ import annotations
 from mintpilot.core.errors import InputError
 from mintpilot.core.plan import Plan
 from mintpilot.core.ports import Ask, Decision, Situation, Strategy
+from mintpilot.core.tolerances import TOLERANCE
 from mintpilot.core.tree import LeafReason, Mint, PlanClass, ScoredQuery, StopReason
 from mintpilot.strategies.exhaustive import best_about, is_known
 from mintpilot.strategies.flying import (
@@ -42,7 +43,7 @@ class KnowNoStrategy(Strategy):
         self._quantile = quantile
 
     def decide(self, situation: Situation) -> Decision:
-        """Asks about the first gap that tells the classes apart, or flies."""
+        """Asks about the first gap that is not known, or flies."""
         mint = tree_of(situation)
         if mint.root.leaf is LeafReason.INFEASIBLE:
             return fly(situation, mint, None, StopReason.INFEASIBLE)
@@ -60,7 +61,7 @@ class KnowNoStrategy(Strategy):
 
     def prediction_set(self, mint: Mint) -> tuple[PlanClass, ...]:
         """The plan classes that are likely enough; never empty: at least the likeliest one."""
-        likely = tuple(c for c in mint.classes if c.probability >= 1 - self._quantile - 1e-9)
+        likely = tuple(c for c in mint.classes if c.probability >= 1 - self._quantile - TOLERANCE)
         return likely or mint.classes[:1]
 
 

@@ -1,4 +1,4 @@
-"""MINT: ask only what changes the plan, in the order that tells most (method, sections 3 to 6)."""
+"""MINT: ask only what changes the plan, by information gain (method, sections 3 to 6)."""
 
 from __future__ import annotations
 
@@ -10,13 +10,14 @@ from mintpilot.core.geometry import Floats
 from mintpilot.core.mission import CriticalityRule
 from mintpilot.core.plan import Plan
 from mintpilot.core.ports import Ask, Decision, QueryObjective, Situation, Strategy
+from mintpilot.core.tolerances import TOLERANCE
 from mintpilot.core.tree import LeafReason, Mint, ScoredQuery, StopReason
 from mintpilot.elicitation.candidates import candidate_queries
 from mintpilot.elicitation.choose import choose
 from mintpilot.reasoning.situation import plans_of, regret_matrix
-from mintpilot.reasoning.tree import TOLERANCE
 from mintpilot.strategies.confirming import confirm_or_avoid
 from mintpilot.strategies.flying import (
+    answerable,
     best_safe_plan,
     fly,
     fly_cautiously,
@@ -27,29 +28,29 @@ from mintpilot.strategies.flying import (
 from mintpilot.strategies.proposals import gain_bound_bits, with_proposals
 
 ALTERNATIVES = 5
-"""How many of the other cuts are told with the chosen one."""
+"""How many of the other queries are reported with the chosen one."""
 
 
 class MintStrategy(Strategy):
     """The method of the paper, made exact by the specification.
 
     Args:
-        objective: judges cuts instead of the situation's objective, e.g. a random one.
+        objective: judges queries instead of the situation's objective, e.g. a random one.
     """
 
     def __init__(self, objective: QueryObjective | None = None) -> None:
         self._objective = objective
 
     def decide(self, situation: Situation) -> Decision:
-        """Asks the best cut, or flies; the stop reasons are those of method section 5, in this order.
+        """Asks the best query, or flies; the stop reasons are those of method section 5, in this order.
 
         1. One plan class is left or holds enough of the mass, or one plan is good for all: fly it. If it enters a
            region that is not known to be passable, ask about that one or avoid it, whichever is cheaper on average.
         2. The operator is silent: fly the cautious plan.
-        3. The budget is spent, or no cut is worth asking: fly the safe plan that loses least on average.
+        3. The budget is spent, or no query is worth asking: fly the safe plan that loses least on average.
 
-        A proposer (a language model), where there is one, is asked for cuts only when the best of our own falls short
-        of what any cut could tell (`mintpilot.strategies.proposals.with_proposals`); the best by score wins.
+        A proposer (a language model), where there is one, is asked for queries only when the best of our own falls
+        short of what any query could gain (`mintpilot.strategies.proposals.with_proposals`); the best by score wins.
         """
         mint = tree_of(situation)
         if mint.root.leaf is LeafReason.INFEASIBLE:
@@ -83,10 +84,10 @@ class MintStrategy(Strategy):
 
 
 def _rank(situation: Situation, mint: Mint, regret_s: Floats, objective: QueryObjective) -> tuple[ScoredQuery, ...]:
-    """Our own cuts, best first."""
+    """The enumerated queries, best first."""
     queries = candidate_queries(mint, start_m=situation.problem.start_m, refused=situation.withdrawn)
-    asked = {query.id for query, _ in situation.asked}
-    return choose(queries, mint, regret_s, objective, situation.settings, asked=asked)
+    asked = {one.query.id for one in situation.asked}
+    return choose(answerable(queries, situation), mint, regret_s, objective, situation.settings, asked=asked)
 
 
 def _settled(situation: Situation, mint: Mint) -> tuple[Plan, StopReason] | None:

@@ -41,10 +41,11 @@ class RiskyStrategy(Strategy):
         return _fly(situation, Stance.RISKY, None)
 
 
-class PureLlmStrategy(Strategy):
-    """The paper's 'Pure LLM': a description is all it has, so its stance and its guesses are those of a coin.
+class PassiveMixtureStrategy(Strategy):
+    """A mixture of the two passive stances, drawn by a coin. It stands beside the paper's row 'Pure LLM'.
 
-    For each mission it draws once whether uncertain regions are obstacles or free space, and picks at random among the
+    The paper's passive planner has a description and asks nothing; which stance it takes is not stated. For each
+    decision this one draws whether uncertain regions are obstacles or free space, and picks at random among the
     candidates of an unclear target and between looking into a room and not, by their probabilities.
 
     Args:

@@ -2,23 +2,21 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from mintpilot.core.ports import Decision, Situation, Strategy
 from mintpilot.elicitation.objectives.random import Random
 from mintpilot.strategies.mint import MintStrategy
 
 
 class RandomQueryStrategy(Strategy):
-    """MINT with cuts drawn at random among those that tell something.
+    """MINT with queries drawn at random among those with information gain.
 
     Args:
         seed: of the draws. Same seed, same questions.
     """
 
     def __init__(self, seed: int = 0) -> None:
-        self._mint = MintStrategy(objective=Random(np.random.default_rng(seed)))
+        self._mint = MintStrategy(objective=Random(seed))
 
     def decide(self, situation: Situation) -> Decision:
-        """Asks a random useful cut, or flies, for the reasons of `MintStrategy`."""
+        """Asks a random useful query, or flies, for the reasons of `MintStrategy`."""
         return self._mint.decide(situation)

@@ -13,7 +13,7 @@ from mintpilot.core.plan import PlanningProblem, Stop, VehicleLimits
 from mintpilot.core.semantic_map import Knowledge, SemanticMap
 from mintpilot.core.task import Task
 from mintpilot.uncertainty.gaps import obstacle_gaps, presence_gaps
-from mintpilot.uncertainty.matching import View
+from mintpilot.uncertainty.matching import Standpoint
 from mintpilot.uncertainty.targets import bind
 from mintpilot.uncertainty.things import things_of
 
@@ -57,7 +57,7 @@ def find_gaps(
         honour_wishes: False gives up avoidances that are not strict.
     """
     things = things_of(map)
-    view = View(start_m=start_m, towards_m=map.frame.box.centre_m)
+    view = Standpoint(start_m=start_m, towards_m=map.frame.box.centre_m)
     bound = bind(task, things, view, finished=finished)
     avoided = {a.kind for a in task.avoid if a.strict or honour_wishes}
     wished = avoided - {a.kind for a in task.avoid if a.strict}

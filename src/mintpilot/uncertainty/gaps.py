@@ -8,7 +8,7 @@ from dataclasses import fields
 
 import numpy as np
 
-from mintpilot.core.gap import ABSENT, BLOCKED, PASSABLE, PRESENT, GapKind, KnowledgeGap
+from mintpilot.core.gap import ABSENT, BLOCKED, PASSABLE, PRESENT, GapKind, KnowledgeGap, obstacle_id, presence_id
 from mintpilot.core.geometry import Vec3
 from mintpilot.core.observation import RegionKind
 from mintpilot.core.plan import Site, Stop
@@ -28,7 +28,7 @@ def obstacle_gaps(
     """One gap for each region whose passability is open; regions without cells, and of kinds left out, open none."""
     return [
         KnowledgeGap(
-            id=f"obstacle:{region.id}",
+            id=obstacle_id(region.id),
             kind=GapKind.OBSTACLE,
             subject=region.id,
             description=region.description or _unnamed(f"the {region.kind}", region_middle_m(map, region), things),
@@ -85,7 +85,7 @@ def region_middle_m(map: SemanticMap, region: Region) -> Vec3:
 
 def _look(room: Room) -> Stop:
     site = Site(position_m=room.viewpoint_m, reach_m=LOOK_REACH_M, value=PRESENT, label=room.id)
-    return Stop(id=f"look:{room.id}", action=Action.LOOK, sites=(site,), gap=f"presence:{room.id}", optional=True)
+    return Stop(id=f"look:{room.id}", action=Action.LOOK, sites=(site,), gap=presence_id(room.id), optional=True)
 
 
 def _two(first: float) -> tuple[float, float]:

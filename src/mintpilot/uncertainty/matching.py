@@ -26,7 +26,7 @@ _TIE = 0.05
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class View:
+class Standpoint:
     """From where ``left``, ``nearest`` and the like are judged."""
 
     start_m: Vec3
@@ -47,7 +47,7 @@ class View:
         return ahead_x * y - ahead_y * x
 
 
-EXTREMES: dict[str, Callable[[View, Thing], float]] = {
+EXTREMES: dict[str, Callable[[Standpoint, Thing], float]] = {
     "nearest": lambda view, thing: -view.distance_m(thing),
     "farthest": lambda view, thing: view.distance_m(thing),
     "largest": lambda _, thing: math.prod(thing.size_m),
@@ -60,7 +60,7 @@ EXTREMES: dict[str, Callable[[View, Thing], float]] = {
 }
 
 
-def match(reference: Reference, things: Sequence[Thing], view: View) -> tuple[Thing, ...]:
+def match(reference: Reference, things: Sequence[Thing], view: Standpoint) -> tuple[Thing, ...]:
     """The things that the reference may mean, in the order of ``things``.
 
     Unnamed attributes may be part of the label (``fire extinguisher``). The label itself counts first; only where
@@ -93,7 +93,7 @@ def _word(label: str) -> str:
     return label.lower().replace("_", " ").strip()
 
 
-def _has(thing: Thing, attribute: Attribute, things: Sequence[Thing], view: View) -> bool | None:
+def _has(thing: Thing, attribute: Attribute, things: Sequence[Thing], view: Standpoint) -> bool | None:
     """Whether the thing has the attribute; None where that is not known."""
     name, value = name_of(attribute), value_of(attribute)
     if name == SIDE:

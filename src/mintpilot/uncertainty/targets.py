@@ -7,12 +7,12 @@ import re
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field
 
-from mintpilot.core.gap import Candidate, GapKind, KnowledgeGap
+from mintpilot.core.gap import Candidate, GapKind, KnowledgeGap, target_id
 from mintpilot.core.plan import Site, Stop
 from mintpilot.core.task import Action, Reference, SubGoal, Task
 from mintpilot.uncertainty.describing import describe_apart, seen
 from mintpilot.uncertainty.gaps import LOOK_REACH_M
-from mintpilot.uncertainty.matching import View, match
+from mintpilot.uncertainty.matching import Standpoint, match
 from mintpilot.uncertainty.things import ROOM, Thing, middle_m, nearest_first, synonyms
 
 _REACH_M = {Action.GO: 1.5, Action.PICK: 1.2, Action.DELIVER: 1.5, Action.LOOK: 1.5}
@@ -26,7 +26,7 @@ class Binding:
     """What the sub-goals come to, collected in order."""
 
     things: Sequence[Thing]
-    view: View
+    view: Standpoint
     finished: Collection[str]
     """Ids of stops that are left out."""
     stops: list[Stop] = field(default_factory=list)
@@ -75,7 +75,7 @@ class Binding:
         return ()
 
 
-def bind(task: Task, things: Sequence[Thing], view: View, *, finished: Collection[str]) -> Binding:
+def bind(task: Task, things: Sequence[Thing], view: Standpoint, *, finished: Collection[str]) -> Binding:
     """Binds each sub-goal to the things it may mean.
 
     A stop's id is its action and its number in the task (``pick:1``), so that it stays the same when the map grows;
@@ -109,11 +109,11 @@ def _is_fixed(reference: Reference) -> bool:
 
 
 def _gap(
-    reference: Reference, number: int, found: Sequence[Thing], things: Sequence[Thing], view: View
+    reference: Reference, number: int, found: Sequence[Thing], things: Sequence[Thing], view: Standpoint
 ) -> KnowledgeGap:
     words = describe_apart(found, things, view.start_m)
     return KnowledgeGap(
-        id=f"target:{number}:{_slug(reference.phrase)}",
+        id=target_id(number, _slug(reference.phrase)),
         kind=GapKind.TARGET,
         subject=reference.phrase,
         description=reference.phrase if reference.phrase.lower().startswith("the ") else f"the {reference.phrase}",

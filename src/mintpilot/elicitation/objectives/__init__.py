@@ -1,4 +1,4 @@
-"""Ways to judge how much a cut is worth, as plug-ins measured against each other (method, section 4).
+"""Ways to judge how much a query is worth, as plug-ins measured against each other (method, section 4).
 
 Their names are in the one table of names, `mintpilot.assembly.registry`.
 """

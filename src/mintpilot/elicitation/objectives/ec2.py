@@ -6,44 +6,45 @@ import numpy as np
 
 from mintpilot.core.geometry import Floats
 from mintpilot.core.ports import QueryObjective, QuerySituation
-from mintpilot.elicitation.objectives.channel import class_masses
-
-NOTHING = 1e-12
+from mintpilot.core.tolerances import ROUNDING
+from mintpilot.elicitation.objectives.channel import class_masses, heard
 
 
 class Ec2(QueryObjective):
     """Expected weight of the edges that the answer cuts, as a share of all edges.
 
     Two joint hypotheses of different plan classes are joined by an edge that weighs the product of their probabilities
-    (Golovin, Krause and Ray 2010). With answer error e, an answer discounts the hypotheses that disagree by e / (1 - e)
-    instead of removing them, less what an answer that tells nothing would discount (Chen, Hassani and Krause 2017).
+    (Golovin, Krause and Ray 2010). An answer discounts the hypotheses that disagree with it by the ratio of the
+    probabilities of a wrong answer and of the right one, e / (1 - e) for a yes or no, instead of removing them, less
+    what an answer without information would discount (Chen, Hassani and Krause 2017).
     """
 
     def scores(self, situation: QuerySituation) -> Floats:
         """Shares (q,), each from 0 to 1; 0 where all hypotheses are of one class."""
-        if not len(situation.yes):
+        if not len(situation.parts):
             return np.zeros(0)
-        error = situation.settings.answer_error
-        discount = error / (1 - error)
-        yes, no = class_masses(situation)
         total: Floats = np.asarray(np.bincount(situation.class_of, weights=situation.probability), float)
-        edges = _edges(total[None, :])
-        if edges[0] <= NOTHING:
-            return np.zeros(len(yes))
-        says_yes = (1 - error) * yes.sum(axis=1) + error * no.sum(axis=1)
-        cut = says_yes * self._cut(yes, no, edges, discount) + (1 - says_yes) * self._cut(no, yes, edges, discount)
-        share: Floats = np.clip(cut / edges, 0.0, 1.0)
-        share[share <= NOTHING] = 0.0
+        edges = float(_edges(total))
+        if edges <= ROUNDING:
+            return np.zeros(len(situation.parts))
+        masses = class_masses(situation)
+        said = heard(masses.sum(axis=2, keepdims=True), situation)[:, :, 0]
+        share: Floats = np.clip((said * self._cut(masses, edges, situation)).sum(axis=1) / edges, 0.0, 1.0)
+        share[share <= ROUNDING] = 0.0
         return share
 
     @staticmethod
-    def _cut(agree: Floats, disagree: Floats, edges: Floats, discount: float) -> Floats:
-        """Weight (q,) that one answer cuts, beyond what it would cut if it told nothing."""
-        highest = np.where(agree.sum(axis=1) > NOTHING, 1.0, discount)
-        return highest**2 * edges - _edges(agree + discount * disagree)
+    def _cut(masses: Floats, edges: float, situation: QuerySituation) -> Floats:
+        """Weight (q, r) that each answer cuts, beyond what an answer without information would cut."""
+        error = situation.settings.answer_error
+        discount = error / (1 - error) / (situation.part_count[:, None] - 1)
+        highest = np.where(masses.sum(axis=2) > ROUNDING, 1.0, discount)
+        left = masses + discount[:, :, None] * (masses.sum(axis=1, keepdims=True) - masses)
+        cut: Floats = highest**2 * edges - _edges(left)
+        return cut
 
 
 def _edges(mass: Floats) -> Floats:
-    """Weight of all edges between classes with these masses (q, m): half of (sum)^2 - sum of squares."""
-    weight: Floats = (mass.sum(axis=1) ** 2 - (mass**2).sum(axis=1)) / 2
+    """Weight of all edges between classes with these masses (…, m): half of (sum)^2 - sum of squares."""
+    weight: Floats = (mass.sum(axis=-1) ** 2 - (mass**2).sum(axis=-1)) / 2
     return weight

@@ -11,18 +11,19 @@ from mintpilot.core.compiled import compiled
 from mintpilot.core.errors import LimitError
 from mintpilot.core.geometry import Bools, Floats, Ints
 from mintpilot.core.ports import QueryObjective, QuerySituation
+from mintpilot.core.tolerances import DECIMALS, ROUNDING, TOLERANCE
 
 MAX_STATES = 8_000
 """Default bound on the posterior supports that are looked at."""
-_ROUNDING = 1e-12
 _BEHIND = 1e-6
+"""How much worse than the best a query looks whose figure is a bound only."""
 
 
 class Optimal(QueryObjective):
     """Fewest expected questions until asking may stop (method, section 5), with a memo over posterior supports.
 
     Asking may stop when one plan class holds ``1 - alpha`` of the mass, when one plan is within ``delta_c_s`` of the
-    best under all that is left, or when no cut splits what is left. Exact for answer error 0 only.
+    best under all that is left, or when no query splits what is left. Exact for answer error 0 only.
 
     Args:
         max_states: bound on the posterior supports that are looked at.
@@ -32,9 +33,9 @@ class Optimal(QueryObjective):
         self._max_states = max_states
 
     def scores(self, situation: QuerySituation) -> Floats:
-        """For each cut (q,), 1 / expected questions when it is asked first, itself counted; 0 for useless ones.
+        """For each query (q,), 1 / expected questions when it is asked first, itself counted; 0 for useless ones.
 
-        Exact for the best cut; for others it may be an upper bound, always below the best.
+        Exact for the best query; for others it may be an upper bound, always below the best.
 
         Raises:
             LimitError: answers may be wrong, or more than ``max_states`` supports would be looked at.
@@ -52,16 +53,19 @@ class _Programme:
 
     def __init__(self, situation: QuerySituation, max_states: int) -> None:
         settings = situation.settings
-        good = situation.regret_s <= settings.delta_c_s + 1e-9
-        columns = np.vstack([situation.yes, good, situation.class_of[None, :]])
+        good = situation.regret_s <= settings.delta_c_s + TOLERANCE
+        labels = situation.part_count[:, None] - 1 - situation.parts
+        columns = np.vstack([labels, good, situation.class_of[None, :]])
         kinds, kind_of = np.unique(columns, axis=1, return_inverse=True)
-        cuts = len(situation.yes)
+        count = len(labels)
         self.mass: Floats = np.asarray(np.bincount(kind_of.ravel(), weights=situation.probability), float)
         self.row_of: Ints
-        self.cuts, self.row_of = np.unique(kinds[:cuts].astype(bool), axis=0, return_inverse=True)
-        self.weighted_cuts = self.cuts * self.mass
-        # What no cut tells apart ends the asking just as one good plan does.
-        self.good = np.vstack([kinds[cuts:-1].astype(float), _indistinct(kinds[:cuts], kinds[-1])])
+        rows, self.row_of = np.unique(kinds[:count], axis=0, return_inverse=True)
+        self.arity = int(situation.part_count.max(initial=2))
+        self.heads: Bools = rows[:, None, :] == np.arange(self.arity - 1, 0, -1)[:, None]
+        """(queries, arity - 1, hypotheses): all parts but one, which holds what is left."""
+        # What no query tells apart ends the asking just as one good plan does.
+        self.good = np.vstack([kinds[count:-1].astype(float), _indistinct(kinds[:count], kinds[-1])])
         classes = np.unique(kinds[-1])
         self.member = (kinds[-1][:, None] == classes[None, :]).astype(float)
         self.enough = 1 - settings.alpha
@@ -77,10 +81,8 @@ class _Programme:
         if self.bounds(everything[None, :])[0] == 0:
             return np.zeros(len(self.row_of))
         least, _, _ = self.search(everything)
-        worth = np.zeros(len(self.cuts))
-        for number, cut in enumerate(self.cuts):
-            if cut.any() and not cut.all():
-                worth[number] = 1.0 / least[np.packbits(cut if cut[0] else ~cut).tobytes()]
+        parts = _ordered(self.heads, everything)
+        worth = np.array([1.0 / least[key] if key in least else 0.0 for key in _keys(parts)])
         return worth[self.row_of.ravel()]
 
     def value(self, support: Bools, limit: float) -> float:
@@ -103,33 +105,36 @@ class _Programme:
         return least
 
     def search(self, support: Bools, limit: float = float("inf")) -> tuple[dict[bytes, float], float, bool]:
-        """Expected questions for each cut asked first, by its yes part; the least of them; whether that is exact.
+        """Expected questions for each query asked first, by its parts; the least of them; whether that is exact.
 
-        For cuts that are no better than the best one, or than ``limit``, the figure may be a lower bound, but is always
-        above the best.
+        For queries that are no better than the best one, or than ``limit``, the figure may be a lower bound, but is
+        always above the best.
         """
-        yes = self.cuts & support
-        count = yes.sum(axis=1)
-        yes = yes[(count > 0) & (count < support.sum())]
-        if not len(yes):
+        heads = self.heads & support
+        inside = heads.sum(axis=2)
+        total = support.sum()
+        heads = heads[(inside.max(axis=1) < total) & (inside.sum(axis=1) > 0)]
+        if not len(heads):
             return {}, 0.0, True
-        # A cut and its opposite are one: the yes part is the one that holds the first hypothesis.
-        yes = np.where(yes[:, np.argmax(support)][:, None], yes, support & ~yes)
-        row_of = {packed.tobytes(): row for row, packed in enumerate(np.packbits(yes, axis=1))}
+        parts = _ordered(heads, support)
+        row_of = {key: row for row, key in enumerate(_keys(parts))}
         keys = sorted(row_of)
-        yes = yes[[row_of[key] for key in keys]]
-        no = support & ~yes
-        share = yes @ self.mass / self.mass[support].sum()
-        below_yes, below_no = self.bounds(yes), self.bounds(no)
-        least = 1.0 + share * below_yes + (1 - share) * below_no
-        best, exact = limit, np.zeros(len(yes), bool)
-        # The lowest bound first; among equal bounds the most even cut.
-        for i in np.lexsort((np.abs(share - 0.5), np.round(least, 9))):
-            for part, weight, below in ((yes[i], share[i], below_yes[i]), (no[i], 1 - share[i], below_no[i])):
-                if least[i] >= best - _ROUNDING:
+        parts = parts[[row_of[key] for key in keys]]
+        share = (parts[:, :-1].reshape(-1, support.size) @ self.mass).reshape(len(parts), -1)
+        share = share / self.mass[support].sum()
+        share = np.concatenate([share, 1 - share.sum(axis=1, keepdims=True)], axis=1)
+        below = self.bounds(parts.reshape(-1, support.size)).reshape(share.shape)
+        least = 1.0 + (share * below).sum(axis=1)
+        best, exact = limit, np.zeros(len(parts), bool)
+        uneven = np.abs(share[:, :-1] - 1 / self.arity).sum(axis=1)
+        # The lowest bound first; among equal bounds the most even query.
+        for i in np.lexsort((uneven, np.round(least, DECIMALS))):
+            for part, weight, bound in zip(parts[i], share[i], below[i], strict=True):
+                if least[i] >= best - ROUNDING:
                     break
-                least[i] += weight * (self.value(part, below + (best - least[i]) / weight) - below)
-            if least[i] < best - _ROUNDING:
+                if weight > 0:
+                    least[i] += weight * (self.value(part, bound + (best - least[i]) / weight) - bound)
+            if least[i] < best - ROUNDING:
                 best, exact[i] = float(least[i]), True
         found = float(least.min())
         # What was not followed to its end is no better than the best, but must not look as good.
@@ -139,27 +144,31 @@ class _Programme:
     def bounds(self, supports: Bools) -> Floats:
         """For each support (s, hypotheses): 0 where asking may stop, else a lower bound on the expected questions.
 
-        Asking ends in parts that one plan covers, or all but ``alpha`` of which one class covers. However the parts are
-        cut, those of n covers weigh no more than the n heaviest covers, overlaps counted twice; so no way of asking
-        beats Huffman's code for those.
+        Asking ends in parts that one plan covers, or all but ``alpha`` of which one class covers. However they are
+        divided, those of n covers weigh no more than the n heaviest covers, overlaps counted twice; so no way of asking
+        beats Huffman's code for those, over as many symbols as the largest query has parts.
         """
         weight = supports * self.mass
         total = weight.sum(axis=1)
         by_class = weight @ self.member
         covered = supports @ self.good.T >= supports.sum(axis=1)[:, None]
-        stop = (by_class.max(axis=1) >= self.enough * total - _ROUNDING) | covered.any(axis=1)
-        least = huffman(np.hstack([by_class / self.enough, weight @ self.good.T]) / total[:, None])
+        stop = (by_class.max(axis=1) >= self.enough * total - ROUNDING) | covered.any(axis=1)
+        covers = np.hstack([by_class / self.enough, weight @ self.good.T])
+        least = huffman(covers / np.maximum(total, ROUNDING)[:, None], self.arity)
         if not self.shared:
-            share = by_class / total[:, None]
+            share = by_class / np.maximum(total, ROUNDING)[:, None]
             entropy = -(share * np.log2(np.where(share > 0, share, 1.0))).sum(axis=1)
-            least = np.maximum(least, entropy - self.slack)
+            least = np.maximum(least, (entropy - self.slack) / np.log2(self.arity))
         bound: Floats = np.where(stop, 0.0, np.maximum(1.0, least))
         return bound
 
 
 @compiled()
-def huffman(weights: Floats) -> Floats:
-    """For each row (s, n) the mean length of Huffman's code for its heaviest weights, cut off at a sum of 1."""
+def huffman(weights: Floats, arity: int) -> Floats:
+    """For each row (s, n) the mean length of Huffman's code for its heaviest weights, cut off at a sum of 1.
+
+    ``arity`` is the number of symbols of the code, 2 or more.
+    """
     out = np.zeros(len(weights))
     for row in range(len(weights)):
         sizes = np.sort(weights[row])[::-1]
@@ -168,22 +177,47 @@ def huffman(weights: Floats) -> Floats:
             sizes[count] = min(sizes[count], left)
             left -= sizes[count]
             count += 1
+        # With more symbols than two the first ones to be joined are fewer, so that the last joint is full.
+        joining = 2 + (count - 2) % (arity - 1)
         while count > 1:
-            # The two lightest stand at the end; their sum goes where it belongs.
-            joined = sizes[count - 1] + sizes[count - 2]
+            # The lightest stand at the end; their sum goes where it belongs.
+            joined = 0.0
+            for i in range(count - joining, count):
+                joined += sizes[i]
             out[row] += joined
-            count -= 1
+            count -= joining - 1
             at = count - 1
             while at > 0 and sizes[at - 1] < joined:
                 sizes[at] = sizes[at - 1]
                 at -= 1
             sizes[at] = joined
+            joining = arity
     return out
 
 
-def _indistinct(cuts: NDArray[Any], class_of: NDArray[Any]) -> Floats:
-    """Rows of truth values: the hypotheses that no cut tells apart, for each such group of more than one class."""
-    group_of = np.unique(cuts, axis=1, return_inverse=True)[1].ravel()
+def _ordered(heads: Bools, support: Bools) -> Bools:
+    """All parts (q, r, n) of queries, of which all but one are given (q, r - 1, n), in order of their first hypothesis.
+
+    Queries that divide the support alike are equal then, whatever their parts are called.
+    """
+    rest = support & ~heads.any(axis=1)
+    if heads.shape[1] == 1:
+        swap = ~heads[:, 0, np.argmax(support)][:, None]
+        first = np.where(swap, rest, heads[:, 0])
+        return np.stack([first, support & ~first], axis=1)
+    parts = np.concatenate([heads, rest[:, None]], axis=1)
+    order = np.argsort(np.where(parts.any(axis=2), parts.argmax(axis=2), support.size), axis=1, kind="stable")
+    return np.take_along_axis(parts, order[:, :, None], axis=1)
+
+
+def _keys(parts: Bools) -> list[bytes]:
+    """A key for each query: the parts (q, r, n) but the last, packed."""
+    return [packed.tobytes() for packed in np.packbits(parts[:, :-1], axis=2)]
+
+
+def _indistinct(labels: NDArray[Any], class_of: NDArray[Any]) -> Floats:
+    """Rows of truth values: the hypotheses that no query tells apart, for each such group of more than one class."""
+    group_of = np.unique(labels, axis=1, return_inverse=True)[1].ravel()
     groups = [group_of == g for g in range(int(group_of.max()) + 1)]
     rows = [row.astype(float) for row in groups if np.unique(class_of[row]).size > 1]
     return np.array(rows) if rows else np.zeros((0, len(class_of)))

@@ -1,4 +1,4 @@
-"""A yardstick: any cut that tells something, at random."""
+"""A yardstick: any query with information gain, at random."""
 
 from __future__ import annotations
 
@@ -10,18 +10,18 @@ from mintpilot.elicitation.objectives.information_gain import InformationGain
 
 
 class Random(QueryObjective):
-    """Ranks the cuts that tell something of the plan class at random.
+    """Ranks the queries with information gain at random.
 
     Args:
-        rng: where the ranks come from; by default a generator with seed 0. Same generator, same questions.
+        seed: of the draws. Same seed, same questions.
     """
 
-    def __init__(self, rng: np.random.Generator | None = None) -> None:
-        self._rng = rng or np.random.default_rng(0)
+    def __init__(self, seed: int = 0) -> None:
+        self._rng = np.random.default_rng(seed)
 
     def scores(self, situation: QuerySituation) -> Floats:
-        """Numbers (q,) above 0 for cuts with gain, 0 for the others."""
+        """Numbers (q,) above 0 for queries with gain, 0 for the others."""
         worth = InformationGain().scores(situation) > 0
-        # 1 - random() is never 0: a cut with gain is always worth more than nothing.
+        # 1 - random() is never 0: a query with gain is always worth more than nothing.
         drawn: Floats = np.where(worth, 1.0 - self._rng.random(len(worth)), 0.0)
         return drawn

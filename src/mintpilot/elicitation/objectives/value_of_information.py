@@ -6,8 +6,8 @@ import numpy as np
 
 from mintpilot.core.geometry import Floats
 from mintpilot.core.ports import QueryObjective, QuerySituation
-
-NOTHING = 1e-9
+from mintpilot.core.tolerances import TOLERANCE
+from mintpilot.elicitation.objectives.channel import heard, part_sums
 
 
 class ValueOfInformation(QueryObjective):
@@ -20,14 +20,10 @@ class ValueOfInformation(QueryObjective):
 
 def regret_saved_s(situation: QuerySituation) -> Floats:
     """Expected seconds of regret that each answer saves (q,), never below 0, if the best plan for it is then flown."""
-    if not len(situation.yes) or not situation.regret_s.size:
-        return np.zeros(len(situation.yes))
-    error = situation.settings.answer_error
+    if not len(situation.parts) or not situation.regret_s.size:
+        return np.zeros(len(situation.parts))
     loss = situation.regret_s * situation.probability
-    total = loss.sum(axis=1)
-    yes = situation.yes.astype(float) @ loss.T
-    no = np.maximum(total - yes, 0.0)
-    after = ((1 - error) * yes + error * no).min(axis=1) + ((1 - error) * no + error * yes).min(axis=1)
-    saved: Floats = np.maximum(total.min() - after, 0.0)
-    saved[saved <= NOTHING] = 0.0
+    after = heard(part_sums(situation, loss.T), situation).min(axis=2).sum(axis=1)
+    saved: Floats = np.maximum(loss.sum(axis=1).min() - after, 0.0)
+    saved[saved <= TOLERANCE] = 0.0
     return saved

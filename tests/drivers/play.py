@@ -7,13 +7,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from mintpilot.assembly.registry import load
-from mintpilot.core.gap import GapKind
 from mintpilot.core.mission import AskingSettings
 from mintpilot.core.ports import Ask, Fly, QueryObjective, Situation, Strategy
-from mintpilot.core.query import Combine, Query, Reply
-from mintpilot.reasoning.belief import condition, prior_belief
-
-from .worlds import BruteForce, World
+from mintpilot.core.query import Answer, Query, Reply, answer_for
+from mintpilot.mission.belief_state import BeliefState, update
+from mintpilot.reasoning.belief import prior_belief
+from oracles.worlds import BruteForce, World
 
 TOO_MANY = 200
 
@@ -54,23 +53,33 @@ def open_situation(
     )
 
 
-def told(situation: Situation, query: Query, reply: Reply) -> Situation:
-    """The situation after a reply, as the loop makes it."""
-    if reply is Reply.TIMEOUT:
-        return replace(situation, silent=True)
-    if reply is Reply.UNSURE:
-        return replace(situation, withdrawn=situation.withdrawn | {query.id})
-    update = condition(situation.belief, query, reply, situation.settings.answer_error)
-    if update.contradiction:
-        return replace(situation, withdrawn=situation.withdrawn | {query.id})
-    sure = len(query.literals) == 1 or query.combine is Combine.ALL
-    kinds = {g.id: g.kind for g in situation.belief.gaps}
-    named = {x.gap for x in query.literals if kinds[x.gap] is GapKind.OBSTACLE and x.values == {"passable"}}
+def told(situation: Situation, query: Query, answer: Answer | Reply, attempts: tuple[str, ...] = ()) -> Situation:
+    """The situation after an answer, by the update that is shipped.
+
+    Args:
+        situation: before the answer.
+        query: what was asked.
+        answer: what came back; a bare reply takes no time.
+        attempts: ids of the queries that were put before.
+    """
+    before = BeliefState(
+        map=situation.problem.map,
+        belief=situation.belief,
+        confirmed=situation.confirmed,
+        withdrawn=situation.withdrawn,
+        asked=situation.asked,
+        attempts=attempts,
+        silent=situation.silent,
+    )
+    given = Answer(reply=answer, latency_s=0.0) if isinstance(answer, Reply) else answer
+    after = update(before, query, given, situation.settings).state
     return replace(
         situation,
-        belief=update.belief,
-        confirmed=situation.confirmed | (named if sure and reply is Reply.YES else frozenset()),
-        asked=(*situation.asked, (query, reply is Reply.YES)),
+        belief=after.belief,
+        confirmed=after.confirmed,
+        withdrawn=after.withdrawn,
+        asked=after.asked,
+        silent=after.silent,
     )
 
 
@@ -88,9 +97,9 @@ def play(
         if not isinstance(decision, Ask):
             return Game(tuple(queries), decision, situation)
         query = decision.scored.query
-        yes = query.holds(truth)
+        part = query.part_of(truth)
         if rng is not None and rng.random() < situation.settings.answer_error:
-            yes = not yes
+            part = (part + int(rng.integers(1, query.part_count))) % query.part_count
+        situation = told(situation, query, answer_for(query, part), tuple(q.id for q in queries))
         queries.append(query)
-        situation = told(situation, query, Reply.YES if yes else Reply.NO)
     raise AssertionError(f"still asking after {TOO_MANY} questions")

@@ -1,0 +1,1 @@
+"""What plays a part of a mission in tests: it calls what is shipped, the answer update above all, and never judges."""
