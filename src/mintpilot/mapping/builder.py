@@ -136,7 +136,7 @@ class MapBuilder:
             settings=self._settings,
             names=self._names,
             previous=known,
-            hull_m=self._limits.radius_m + self._limits.margin_m,
+            hull_m=self._limits.clearance_m,
         )
         objects = fused_objects(self._tracks.all, draft)
         flames = [thing.box_m for thing in objects if thing.label == "fire"]
@@ -173,7 +173,7 @@ class MapBuilder:
             cells == Cell.FREE,
             ends=blazing,
             resolution_m=self._frame.resolution_m,
-            hull_m=self._limits.radius_m + self._limits.margin_m,
+            hull_m=self._limits.clearance_m,
         )
         if known is not None and cloud.passable is Knowledge.YES:
             near &= known.cells != Cell.FREE
