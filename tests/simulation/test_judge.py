@@ -32,7 +32,7 @@ def test_an_uneventful_flight_is_a_success() -> None:
 @pytest.mark.parametrize(("toxic", "outcome"), [(True, Outcome.TOXIC_SMOKE), (False, Outcome.SUCCESS)])
 def test_smoke_counts_only_when_toxic(toxic: bool, outcome: Outcome) -> None:
     judge = SceneJudge(scene(smokes=(smoke(toxic=toxic),)), FlightRules())
-    assert judge.observe(np.arange(3.0), positions(START, (4.99, 2, 1), (5.01, 2, 1))) == (2 if toxic else None)
+    assert judge.observe(np.arange(3.0), positions(START, (4.72, 2, 1), (4.74, 2, 1))) == (2 if toxic else None)
     assert judge.final().outcome is outcome
 
 

@@ -21,6 +21,8 @@ from mintpilot.mapping.picture_map import read_picture
 
 _SLACK = 1e-9
 """In cells: edges on a cell's border do not reach into the cell next to it."""
+_SHIFT_SLACK = 1e-3
+"""In cells: two lattices that are shifted against each other by less than this are one."""
 
 
 def cells_in_box(frame: GridFrame, box: Box) -> Ints:
@@ -102,30 +104,34 @@ def _mask_on_map(frame: GridFrame, path: Path) -> NDArray[np.bool_]:
         raise MapError(f"mask '{path}' needs a flat map; on a voxel map outline the region as a box or polygon")
     _, ny, nx = frame.shape
     if path.suffix not in (".yaml", ".yml"):
-        grey, opaque = read_picture(path)
-        if grey.shape != (ny, nx):
-            rows, columns = grey.shape
+        mask = read_picture(path, lambda shades, white: (shades / white < 0.5).astype(np.uint8), hidden=0) == 1
+        if mask.shape != (ny, nx):
+            rows, columns = mask.shape
             raise MapError(
                 f"mask '{path}' is {columns} x {rows} pixels, the map {nx} x {ny}; give one of the same size"
             )
-        return np.asarray((grey < 0.5) & opaque)
+        return np.asarray(mask)
     header = read_ros_header(path)
     if not np.isclose(header.resolution_m, frame.resolution_m, rtol=1e-6):
         raise MapError(
             f"mask '{path}' has {header.resolution_m} m a pixel, the map {frame.resolution_m}; export both alike"
         )
-    return _shifted(frame, header, read_cells(header) == Cell.OCCUPIED)
+    cells, origin_m = read_cells(header)
+    return _shifted(frame, origin_m, cells == Cell.OCCUPIED)
 
 
-def _shifted(frame: GridFrame, header: RosMapHeader, mask: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """The mask on the map's lattice, by the two origins; half cells are rounded."""
+def _shifted(frame: GridFrame, origin_m: tuple[float, float], mask: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """The mask on the map's lattice, by the two origins: every cell that shares some area with one of the mask."""
     _, ny, nx = frame.shape
-    dx, dy = (round((header.origin_m[i] - frame.origin_m[i]) / frame.resolution_m) for i in (0, 1))
+    off = [(origin_m[i] - frame.origin_m[i]) / frame.resolution_m for i in (0, 1)]
+    across, up = ({int(np.floor(o + _SHIFT_SLACK)), int(np.ceil(o - _SHIFT_SLACK))} for o in off)
     on_map = np.zeros((ny, nx), bool)
-    rows, columns = np.nonzero(mask)
-    rows, columns = rows + dy, columns + dx
-    inside = (rows >= 0) & (rows < ny) & (columns >= 0) & (columns < nx)
-    on_map[rows[inside], columns[inside]] = True
+    for dx in across:
+        for dy in up:
+            rows, columns = np.nonzero(mask)
+            rows, columns = rows + dy, columns + dx
+            inside = (rows >= 0) & (rows < ny) & (columns >= 0) & (columns < nx)
+            on_map[rows[inside], columns[inside]] = True
     return on_map
 
 

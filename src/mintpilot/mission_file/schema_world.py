@@ -90,7 +90,7 @@ class RoomSpec(Spec):
 
 
 class ObjectSpec(Spec):
-    """A thing on the map that an instruction may mean."""
+    """A thing on the map that an instruction may mean. It is solid, where it is and as large as it is."""
 
     id: Name
     """Unique name, e.g. `box-1`."""
@@ -99,6 +99,8 @@ class ObjectSpec(Spec):
     position_m: Place
     """Its centre."""
     size_m: Annotated[Point3, Field(description="Edge lengths [x, y, z], metres.")] = (0.4, 0.4, 0.4)
+    solid: bool = True
+    """Whether it can be bumped into. An object of size [0, 0, 0] never can."""
     attributes: Attributes = Field(default_factory=dict)
     """What can be said of it: `{colour: red, size: small}`."""
 

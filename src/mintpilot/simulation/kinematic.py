@@ -33,7 +33,7 @@ class KinematicSimulator(Vehicle, Judge):
     def __init__(self, scene: Scene, rules: FlightRules, *, seed: int, watch_every_s: float = 0.5) -> None:
         del seed
         self._judge = SceneJudge(scene, rules)
-        self._obstacles = Obstacles(scene, rules.radius_m)
+        self._obstacles = Obstacles(scene, rules)
         self._watch_every_s = watch_every_s
         self._time_s = 0.0
         self._position: Floats = np.asarray(scene.start_m, float)
