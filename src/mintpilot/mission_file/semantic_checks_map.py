@@ -42,10 +42,11 @@ def map_faults(mission: MissionFile, world: MapWorld, base: Path) -> Iterator[Fa
     except MintPilotError as error:
         yield _fault(("world", "map"), str(error))
         return
-    objects = tuple(object_of(spec, world.height_m) for spec in world.objects)
     faults = list(_place_faults(mission, world, bare))
     yield from faults
-    if not any(fault.path[:2] in (("world", "start_m"), ("world", "objects")) for fault in faults):
+    sized = [thing for thing in world.objects if min(thing.size_m) >= 0]
+    if not any(fault.path[:2] == ("world", "start_m") for fault in faults):
+        objects = tuple(object_of(spec, world.height_m) for spec in sized)
         yield from _start_faults(mission, world, replace(bare, objects=objects))
     for index, (spec, faults) in enumerate(zip(world.regions, shapes, strict=True)):
         if not faults:
