@@ -1,8 +1,8 @@
 """Least clearance of whole missions on random maps: `python -m bench.clearance [--maps 1000] [--seed 0]`.
 
-Each map has cells of another size, from 0.02 to 2 m; missions are planned, flown by the kinematic simulator, and measured
-by a checker of its own (`tests/oracles/clearance.py`): dense samples of what was flown, exact distances to all cells that
-are not known free.
+Each map has cells of another size, from 0.02 to 2 m. Missions are planned, flown by the kinematic simulator, and
+measured by a checker of its own (`tests/oracles/clearance.py`): dense samples of what was flown, exact distances to all
+cells that are not known free.
 """
 
 from __future__ import annotations
@@ -17,13 +17,13 @@ from pathlib import Path
 import numpy as np
 import yaml
 from PIL import Image
+from tests.oracles.clearance import densely, distances
 
 from mintpilot.assembly.api import run_mission
 from mintpilot.benchmark.intervals import wilson
-from mintpilot.core.events import Event, LegFlown
 from mintpilot.core.errors import MissionError
+from mintpilot.core.events import Event, LegFlown
 from mintpilot.core.query import Reply
-from tests.oracles.clearance import densely, distances
 
 FREE, UNKNOWN, OCCUPIED = 254, 205, 0
 MOST_M = 0.02

@@ -133,7 +133,7 @@ def test_transparency_of_pictures_with_few_bits_a_pixel(tmp_path, bits, clear, e
 def test_pictures_compressed_with_losses_are_refused_by_name(tmp_path, name):
     picture = Image.fromarray(np.full((8, 8), 254, np.uint8))
     picture.save(tmp_path / name, format="WEBP" if name.endswith("webp") else "JPEG")
-    with pytest.raises(MapError, match="(JPEG|lossy WebP) picture.*PGM or PNG"):
+    with pytest.raises(MapError, match=r"(JPEG|lossy WebP) picture.*PGM or PNG"):
         load_ros_map(write(tmp_path, None, name))
 
 

@@ -16,7 +16,9 @@ def densely(points: np.ndarray, spacing: float) -> np.ndarray:
     return np.concatenate(parts)
 
 
-def distances(points: np.ndarray, barred: np.ndarray, origin: tuple[float, ...], cell: float, most: float) -> np.ndarray:
+def distances(
+    points: np.ndarray, barred: np.ndarray, origin: tuple[float, ...], cell: float, most: float
+) -> np.ndarray:
     """Distance (n,) of each point (n, 3) to the nearest barred cell's cube or the grid's border, at most ``most``.
 
     Args:

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
+from tests.oracles.clearance import densely, distances
 
 from mintpilot.core.errors import InfeasibleError, InputError
 from mintpilot.core.geometry import Floats, GridFrame
@@ -17,7 +18,6 @@ from mintpilot.planning.flyable import known_flyable
 from mintpilot.planning.grid_search import shortest_path
 from mintpilot.planning.motion import SMOOTHING_S
 from mintpilot.planning.trajectory import YAW_RATE_RAD_S, plan_trajectory
-from tests.oracles.clearance import densely, distances
 
 LIMITS = VehicleLimits()
 STEP_S = 0.02

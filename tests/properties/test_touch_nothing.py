@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from bench.clearance import ROUNDING_M, fly
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tests.oracles.clearance import densely, distances
 
-from bench.clearance import ROUNDING_M, fly
 from mintpilot.core.errors import InfeasibleError
 from mintpilot.core.geometry import GridFrame
 from mintpilot.core.observation import RegionKind
@@ -17,7 +18,6 @@ from mintpilot.planning.checks import check_path
 from mintpilot.planning.flyable import known_flyable
 from mintpilot.planning.grid_search import shortest_path
 from mintpilot.planning.trajectory import plan_trajectory
-from tests.oracles.clearance import densely, distances
 
 cells_m = st.sampled_from([0.02, 0.05, 0.1, 0.25, 0.5, 0.8, 1.0, 2.0])
 bodies_m = st.sampled_from([0.05, 0.3, 0.4, 0.7, 1.0])

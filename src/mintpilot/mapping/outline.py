@@ -16,7 +16,7 @@ from mintpilot.core.errors import MapError
 from mintpilot.core.geometry import Box, Floats, GridFrame, Ints
 from mintpilot.core.observation import RegionKind
 from mintpilot.core.semantic_map import Cell, Region, SemanticMap
-from mintpilot.mapping.occupancy import RosMapHeader, read_cells, read_ros_header
+from mintpilot.mapping.occupancy import read_cells, read_ros_header
 from mintpilot.mapping.picture_map import read_picture
 
 _SLACK = 1e-9

@@ -107,7 +107,8 @@ def _refuse_lossy(path: Path) -> None:
 
 def _states(picture: Image.Image, look_up: LookUp, hidden: int) -> NDArray[np.uint8]:
     """All pixels' states, block by block of rows, so that little more than the picture itself is held."""
-    coding = picture.tile[0][3] if picture.tile else ""
+    tiles = getattr(picture, "tile", [])
+    coding = tiles[0][3] if tiles else ""
     coding = str(coding[0] if isinstance(coding, tuple) else coding)
     picture.load()
     width, height = picture.size

@@ -14,9 +14,9 @@ from mintpilot.core.geometry import Bools, GridFrame, Ints, Vec3
 from mintpilot.core.semantic_map import Cell, Region, SemanticMap
 
 SMALL_CELLS = 2_000_000
-"""Maps of at most so many cells are left as they are."""
+"""Number of cells up to which maps are left as they are."""
 MAX_CELLS = 20_000_000
-"""Cells of a map, at most, that is planned on: about 1 GB of memory."""
+"""Number of cells of a map that is planned on, at most: about 1 GB of memory."""
 
 
 def cropped(map: SemanticMap, places_m: Sequence[Vec3], spare_m: float) -> SemanticMap:
@@ -65,9 +65,7 @@ def _reached(map: SemanticMap, start: Ints) -> tuple[Ints, Ints]:
     """Lowest and highest cell (3,) of those joined to the free cells beside the start through faces."""
     size = np.array(map.frame.shape)
     low, high = np.clip(start - 2, 0, size - 1), np.clip(start + 2, 0, size - 1)
-    seeds = np.argwhere(
-        map.cells[low[0] : high[0] + 1, low[1] : high[1] + 1, low[2] : high[2] + 1] == Cell.FREE
-    ) + low
+    seeds = np.argwhere(map.cells[low[0] : high[0] + 1, low[1] : high[1] + 1, low[2] : high[2] + 1] == Cell.FREE) + low
     flat = np.ravel_multi_index(tuple(seeds.T), map.frame.shape).astype(np.int64)
     if not len(flat):
         return low, high

@@ -40,7 +40,7 @@ def turned_cells(cells: NDArray[np.uint8], yaw_rad: float) -> tuple[NDArray[np.u
     ny, nx = cells.shape
     corners = np.array([(0, 0), (nx, 0), (0, ny), (nx, ny)], float) @ np.array([(c, s), (-s, c)])
     low, high = corners.min(axis=0), corners.max(axis=0)
-    columns, rows = (max(1, int(math.ceil(edge - _TOUCH))) for edge in high - low)
+    columns, rows = (max(1, math.ceil(edge - _TOUCH)) for edge in high - low)
     check_size("the turned map", columns, rows)
     turned = np.empty((rows, columns), np.uint8)
     _fill(turned, cells, c, s, low)

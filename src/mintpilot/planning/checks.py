@@ -41,7 +41,9 @@ def check_path(path_m: Floats, map: SemanticMap, limits: VehicleLimits) -> str:
     if not np.isfinite(points).all():
         return f"way-point {int(np.argmin(np.isfinite(points).all(axis=1)))} is not a finite number"
     box = map.frame.box
-    inside = ((points >= np.asarray(box.lo_m) - TOLERANCE_M) & (points <= np.asarray(box.hi_m) + TOLERANCE_M)).all(axis=1)
+    inside = ((points >= np.asarray(box.lo_m) - TOLERANCE_M) & (points <= np.asarray(box.hi_m) + TOLERANCE_M)).all(
+        axis=1
+    )
     if not inside.all():
         return f"{_at(points[int(np.argmin(inside))])} leaves the map"
     near = surroundings(map, points, limits.clearance_m)

@@ -66,7 +66,7 @@ class Itinerary:
         stops = (*self.ordered, *visits)
         cruise = self.problem.limits.cruise_mps
         legs: list[Leg] = []
-        for number, way in zip(route.order, route.ways, strict=True):
+        for number, way in zip(route.order, route.paths, strict=True):
             stop = stops[number]
             site = self.site(stop, values)
             assert site is not None, "a tour has a site for every stop"

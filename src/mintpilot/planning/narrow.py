@@ -27,7 +27,7 @@ def narrow_passages(problem: PlanningProblem, terrain: Terrain, site: Site) -> s
     middle = frame.cells_of(np.array([site.position_m]))[0]
     if frame.is_flat:
         middle[0] = 0
-    cells = cells_around(frame, middle, int(math.ceil(site.reach_m / frame.resolution_m)) + 1)
+    cells = cells_around(frame, middle, math.ceil(site.reach_m / frame.resolution_m) + 1)
     cells = cells[distances_m(frame, cells, site.position_m) <= site.reach_m + frame.resolution_m]
     if not (parts[tuple(cells.T)] == parts[tuple(terrain.start)]).any():
         return ""

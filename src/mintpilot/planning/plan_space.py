@@ -10,7 +10,7 @@ from mintpilot.core.gap import BLOCKED, PASSABLE, Assumptions
 from mintpilot.core.plan import Plan, PlanningProblem, Stop
 from mintpilot.core.ports import PlanSpace
 from mintpilot.planning.itinerary import itinerary_of, needed_value
-from mintpilot.planning.legs import LegTable, WaySearch
+from mintpilot.planning.legs import LegTable, PathSearch
 from mintpilot.planning.route import Route, best_route
 from mintpilot.planning.terrain import Terrain
 
@@ -45,7 +45,7 @@ class GridPlanSpace(PlanSpace):
         MissionError: a stop has several sites and no gap to choose among them.
     """
 
-    def __init__(self, problem: PlanningProblem, terrain: Terrain, search: WaySearch) -> None:
+    def __init__(self, problem: PlanningProblem, terrain: Terrain, search: PathSearch) -> None:
         self.itinerary = itinerary_of(problem, terrain)
         self._search = search
         self._legs = LegTable(search)

@@ -11,11 +11,11 @@ from mintpilot.core.geometry import Bools, Floats
 from mintpilot.core.semantic_map import Cell, SemanticMap
 
 RAYS = 400
-"""Directions that are looked in."""
+"""Number of directions that are looked in."""
 SURFACE_M = 0.2
-"""A square metre of surface that was never looked at closely counts as much as this many cubic metres unknown."""
+"""Value of a square metre of surface that was never looked at closely, in cubic metres of unknown space."""
 FLOOR_M = 0.45
-"""Surfaces below this height are floor."""
+"""Height below which surfaces are floor, metres."""
 
 
 def news_m3(

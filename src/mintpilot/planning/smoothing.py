@@ -86,11 +86,10 @@ def _densified(points_m: Floats, spacing_m: float) -> Floats:
 
 
 @compiled(error_model="numpy")
-def _line_clear(
-    barred: Bools, gaps: NDArray[np.uint32], a: Floats, b: Floats, keep: float, window: int
-) -> bool:
+def _line_clear(barred: Bools, gaps: NDArray[np.uint32], a: Floats, b: Floats, keep: float, window: int) -> bool:
     """Looks at parts of at most one cell's edge. Most need no exact test: a cell's centre is known to be far enough
-    from, or too near to, what is barred."""
+    from, or too near to, what is barred.
+    """
     d = b - a
     length = np.sqrt((d * d).sum())
     parts = max(1, int(np.ceil(length)))
@@ -105,16 +104,15 @@ def _line_clear(
         gap = 0.5 * np.sqrt(float(gaps[k, j, i]))
         if gap + off < keep:
             return False
-        if min(gap, window + 0.5) - off - 0.5 * length / parts < keep:
-            if first_near(barred, begin, d, keep)[2] >= 0:
-                return False
+        if min(gap, window + 0.5) - off - 0.5 * length / parts >= keep:
+            continue
+        if first_near(barred, begin, d, keep)[2] >= 0:
+            return False
     return True
 
 
 @compiled(error_model="numpy")
-def _blocked_pieces(
-    barred: Bools, gaps: NDArray[np.uint32], points: Floats, keep: float, window: int
-) -> Bools:
+def _blocked_pieces(barred: Bools, gaps: NDArray[np.uint32], points: Floats, keep: float, window: int) -> Bools:
     blocked = np.zeros(max(len(points) - 1, 0), np.bool_)
     for i in range(len(blocked)):
         blocked[i] = not _line_clear(barred, gaps, points[i], points[i + 1], keep, window)
@@ -122,9 +120,7 @@ def _blocked_pieces(
 
 
 @compiled(error_model="numpy")
-def _farthest_visible(
-    barred: Bools, gaps: NDArray[np.uint32], points: Floats, keep: float, window: int
-) -> Ints:
+def _farthest_visible(barred: Bools, gaps: NDArray[np.uint32], points: Floats, keep: float, window: int) -> Ints:
     """Indices of the points kept when each is followed by the farthest one that it sees."""
     kept = [0]
     here = 0

@@ -18,7 +18,8 @@ _SHAPES = {Shape.BOX: 0, Shape.CYLINDER: 1, Shape.SPHERE: 2}
 class Obstacles:
     """All that can be touched: solids, rooms (shut, hence solid), people, and the building's side walls.
 
-    The hull is an upright cylinder as the rules say. People are three flat cylinders along the body. Floor and roof are left to the flight volume.
+    The hull is an upright cylinder as the rules say. People are three flat cylinders along the body. Floor and roof are
+    left to the flight volume.
     """
 
     def __init__(self, scene: Scene, rules: FlightRules) -> None:
