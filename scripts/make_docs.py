@@ -55,14 +55,14 @@ resolution. A pixel of a ROS map, by the first line that fits (its occupancy is 
 3. shade 205 of 255, which map_saver writes for unknown (50 with `negate`): unknown;
 4. more occupancy than `occupied_thresh`: occupied; 5. less than `free_thresh`: free; 6. else: unknown.
 
-Pictures are PGM, PPM, PNG, BMP, TIFF, WebP or GIF without lossy compression; JPEG is refused, because it changes shades.
-A turned map (yaw in `origin`) is laid on an upright grid: a cell is free only if all that it covers is. Maps of more than
-2 million cells are cut to what can be reached from the start; at most 260 million are read.
+Pictures are PGM, PPM, PNG, BMP, TIFF, WebP or GIF without lossy compression; JPEG is refused, because it changes
+shades. A turned map (yaw in `origin`) is laid on an upright grid: a cell is free only if all that it covers is. Maps of
+more than 2 million cells are cut to what can be reached from the start; at most 260 million are read.
 
-The vehicle's centre stays `radius_m + margin_m + 3 x position_sigma_m` away from everything not known free, from regions
-not known passable, and from listed objects, for cells of any size (`docs/search.md`). Objects are solid, where they are
-and as large as they are; on a flat map the drone passes above or below those that do not come near the height flown at.
-What is the goal stays solid: the drone ends at the nearest free place beside or above it.
+The vehicle's centre stays `radius_m + margin_m + 3 x position_sigma_m` away from everything not known free, from
+regions not known passable, and from listed objects, for cells of any size (`docs/search.md`). Objects are solid, where
+they are and as large as they are; on a flat map the drone passes above or below those that do not come near the height
+flown at. What is the goal stays solid: the drone ends at the nearest free place beside or above it.
 """
 TITLES = {
     "ScenarioWorld": "world by scenario",

@@ -12,7 +12,7 @@ from mintpilot.core.geometry import Bools, Box, GridFrame
 from mintpilot.core.observation import Detection, Frame, RegionKind
 from mintpilot.core.plan import VehicleLimits
 from mintpilot.core.semantic_map import Cell, Knowledge, Region, SemanticMap
-from mintpilot.mapping.corridors import hugging
+from mintpilot.mapping.corridors import off_corridor
 from mintpilot.mapping.fusion import FusionInput, fused_objects, fused_regions, fused_rooms
 from mintpilot.mapping.glow import Glow
 from mintpilot.mapping.identity import Names
@@ -167,7 +167,7 @@ class MapBuilder:
         """
         mask = np.zeros(cells.shape, bool)
         mask.reshape(-1)[cloud.cells] = True
-        near = hugging(
+        near = off_corridor(
             mask,
             cells == Cell.OCCUPIED,
             cells == Cell.FREE,

@@ -34,7 +34,7 @@ MOST_LAYERS = 0.5
 """Share of the cloud's layers in which a place must be passable to count as passable."""
 
 
-def hugging(
+def off_corridor(
     cloud: Bools, solid: Bools, free: Bools, *, ends: Bools | None = None, resolution_m: float, hull_m: float
 ) -> Bools:
     """Unseen voxels of a cloud that are not to be counted on, because they lie off the corridors through it.

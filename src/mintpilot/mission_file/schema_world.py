@@ -13,7 +13,6 @@ from mintpilot.mission_file.schema_base import (
     Place,
     Point2,
     Point3,
-    Positive,
     Probability,
     Several,
     Spec,
@@ -110,7 +109,7 @@ class MapWorld(Spec):
 
     map: Words
     """A ROS map_server file (`.yaml`) or a MovingAI map (`.map`, `.3dmap`); relative to the mission file."""
-    resolution_m: Positive | None = None
+    resolution_m: Annotated[float, Field(ge=1e-4, le=1e4)] | None = None
     """Edge of a cell of a MovingAI map, metres; default 1. A ROS map names its own."""
     height_m: Annotated[float, Field(ge=0)] = 1.0
     """Height at which a flat map is flown, metres."""

@@ -75,7 +75,7 @@ def surroundings(
         passable: ids of regions that are taken as passable besides those known to be.
     """
     frame = map.frame
-    keep = keep_m / frame.resolution_m
+    keep = min(keep_m / frame.resolution_m, float(sum(frame.shape)))  # no cell of the grid is further from its border
     spots = (np.atleast_2d(np.asarray(points_m, float)) - frame.origin_m) / frame.resolution_m
     spare = np.ceil(keep) + 2
     size = np.array(frame.shape[::-1])

@@ -16,7 +16,7 @@ from mintpilot.core.plan import VehicleLimits
 from mintpilot.core.semantic_map import SemanticMap
 from mintpilot.planning.flyable import known_flyable
 from mintpilot.planning.grid_search import distance_field, shortest_path
-from mintpilot.planning.sight import news_m3
+from mintpilot.planning.sight import view_gain_m3
 from mintpilot.planning.terrain import start_cell
 
 
@@ -79,7 +79,7 @@ def next_view(
     chosen = chosen[:: max(1, len(chosen) // settings.places)]
     if not len(chosen):
         return None
-    gain_m3 = news_m3(
+    gain_m3 = view_gain_m3(
         map,
         inspected,
         centres[chosen],
