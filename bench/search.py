@@ -59,7 +59,7 @@ class Joint:
     """One search per hypothesis with only the moves near blocked regions patched; extrapolated if ``of`` < 2^k."""
     of: int
     """Number of hypotheses replanned, whose costs were compared."""
-    ways: int
+    paths: int
     labels: int
 
 
@@ -142,7 +142,7 @@ def joint_row(name: str, search: JointSearch, ends: tuple[Cell3, Cell3], most: i
         joint_ms=median(joint),
         naive_ms=naive * (1 << k) / len(hypotheses),
         of=len(hypotheses),
-        ways=len(found.ways),
+        paths=len(found.paths),
         labels=labels,
     )
 
@@ -196,7 +196,7 @@ def tables(singles: list[Single], joints: list[Joint], peak: float | None) -> li
                 f"{median(ratio):.1f} (worst {max(ratio):.1f})",
                 f"{median(gain):.0f} (least {min(gain):.0f})",
                 f"{min(r.of for r in group)}",
-                f"{median(r.ways for r in group):.0f}",
+                f"{median(r.paths for r in group):.0f}",
                 f"{median(r.labels for r in group):.0f}",
             ]
         )
@@ -209,7 +209,7 @@ def tables(singles: list[Single], joints: list[Joint], peak: float | None) -> li
         Table(
             caption="All 2^k joint hypotheses",
             header=(
-                "grid", "k", "pairs", "time", "single queries", "naive / time", "hypotheses checked", "ways", "labels",
+                "grid", "k", "pairs", "time", "single queries", "naive / time", "hypotheses checked", "paths", "labels",
             ),
             rows=many,
         ),

@@ -46,9 +46,23 @@ finds every mistake in it, and `docs/mission.schema.json` lets an editor help yo
 Lengths are metres, times seconds, angles radians; x is east, y north, z up. Words are read as YAML 1.2 has it: `true`
 and `false` are truth values, `yes` and `no` are words. Anchors, aliases and tags are not read.
 
-Three kinds of worlds: a `scenario` by name, an explicit `scene`, or a `map` of your own. A ROS map keeps its free,
-occupied and unknown cells; only free ones are flown through, and the shade 205, which map_saver writes for unknown, is
-never free. The coordinates of a MovingAI map are those of its scenario files, times the resolution.
+Three kinds of worlds: a `scenario` by name, an explicit `scene`, or a `map` of your own. Only cells that
+the map shows free are flown through. The coordinates of a MovingAI map are those of its scenario files, times the
+resolution. A pixel of a ROS map, by the first line that fits (its occupancy is 1 - shade, with `negate` the shade):
+
+1. not wholly opaque (alpha, transparent colour or palette entry), in every `mode`: unknown;
+2. `mode: raw`: the grey value, 0 to 100, is the occupancy in percent; above 100: unknown;
+3. shade 205 of 255, which map_saver writes for unknown (50 with `negate`): unknown;
+4. more occupancy than `occupied_thresh`: occupied; 5. less than `free_thresh`: free; 6. else: unknown.
+
+Pictures are PGM, PPM, PNG, BMP, TIFF, WebP or GIF without lossy compression; JPEG is refused, because it changes
+shades. A turned map (yaw in `origin`) is laid on an upright grid: a cell is free only if all that it covers is. Maps of
+more than 2 million cells are cut to what can be reached from the start; at most 260 million are read.
+
+The vehicle's centre stays `radius_m + margin_m + 3 x position_sigma_m` away from everything not known free, from
+regions not known passable, and from listed objects, for cells of any size (`docs/search.md`). Objects are solid, where
+they are and as large as they are; on a flat map the drone passes above or below those that do not come near the height
+flown at. What is the goal stays solid: the drone ends at the nearest free place beside or above it.
 """
 TITLES = {
     "ScenarioWorld": "world by scenario",

@@ -81,7 +81,7 @@ def test_malformed_flat_maps(tmp_path, text, words):
         ("voxel 3 3 3\n0 a 0\n", "three whole numbers"),
         ("voxel 3 3 3\n0 3 0\n", r"\[0, 3, 0\] is outside 3 x 3 x 3"),
         ("voxel 3 3 3\n0 -1 0\n", "outside"),
-        ("voxel 3 3 3\n0 99999999999999999999 0\n", "three whole numbers"),
+        ("voxel 3 3 3\n0 99999999999999999999 0\n", "outside"),
     ],
 )
 def test_malformed_voxel_maps(tmp_path, text, words):
@@ -92,7 +92,7 @@ def test_malformed_voxel_maps(tmp_path, text, words):
 def test_missing_unreadable_and_huge(tmp_path, monkeypatch):
     with pytest.raises(MapError, match="there is no map"):
         load_movingai(tmp_path / "none.map")
-    with pytest.raises(MapError, match="cannot be read"):
+    with pytest.raises(MapError, match="no regular file"):
         load_movingai(tmp_path)
     with pytest.raises(LimitError, match="coarser"):
         load_movingai(voxel(tmp_path, "voxel 100000 100000 100000\n"))

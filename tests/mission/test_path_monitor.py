@@ -17,7 +17,7 @@ from mintpilot.mission.way_back import is_stranded, way_back
 from mintpilot.planning.checks import check_path
 from mintpilot.planning.flyable import known_flyable
 from mintpilot.planning.reach import LookAround, next_view, way_to
-from mintpilot.planning.sight import inspect, news_m3
+from mintpilot.planning.sight import inspect, view_gain_m3
 
 LIMITS = VehicleLimits(radius_m=0.2, margin_m=0.05)
 FRAME = GridFrame(origin_m=(0.0, 0.0, 0.0), resolution_m=0.2, shape=(10, 20, 50))
@@ -99,8 +99,8 @@ def test_what_is_flyable_behind_a_wall_is_no_place_to_start_from() -> None:
     assert known_flyable(boxed_in, dot)[5, 10, 32]  # 0.4 m away, behind the wall
     assert is_stranded(boxed_in, dot, at(6.1))
     cells = cells.copy()
-    cells[:, :, 31] = Cell.FREE
-    assert not is_stranded(replace(hall(), cells=cells.copy()), dot, at(6.1))
+    cells[:, :, 30:32] = Cell.FREE
+    assert not is_stranded(replace(hall(), cells=cells.copy()), dot, at(6.02))
 
 
 def test_the_way_back_may_use_up_the_margin() -> None:
@@ -153,14 +153,14 @@ def test_walls_hide_the_unknown() -> None:
     cells[:, :, 24] = Cell.OCCUPIED
     look = {"reach_m": 5.0, "close_m": 4.0, "elevation_rad": (-0.6, 0.3)}
     places, inspected = np.array([[3.0, 2.0, 1.0]]), np.ones(FRAME.shape, bool)
-    assert news_m3(world, inspected, places, **look)[0] > 1.0
-    assert news_m3(replace(world, cells=cells), inspected, places, **look)[0] == 0.0
+    assert view_gain_m3(world, inspected, places, **look)[0] > 1.0
+    assert view_gain_m3(replace(world, cells=cells), inspected, places, **look)[0] == 0.0
 
 
 def test_smoke_hides_the_unknown() -> None:
     look = {"reach_m": 5.0, "close_m": 4.0, "elevation_rad": (-0.6, 0.3)}
     places, inspected = np.array([[3.0, 2.0, 1.0]]), np.ones(FRAME.shape, bool)
-    assert news_m3(with_cloud(half_known(), (4.0, 5.0)), inspected, places, **look)[0] == 0.0
+    assert view_gain_m3(with_cloud(half_known(), (4.0, 5.0)), inspected, places, **look)[0] == 0.0
 
 
 def test_a_surface_is_news_until_it_was_looked_at() -> None:
@@ -170,9 +170,9 @@ def test_a_surface_is_news_until_it_was_looked_at() -> None:
     world = replace(world, cells=cells)
     look = {"close_m": 4.0, "elevation_rad": (-0.6, 0.3)}
     place, inspected = np.array([4.0, 2.0, 1.0]), np.zeros(FRAME.shape, bool)
-    before = news_m3(world, inspected, place[None], reach_m=5.0, **look)[0]
+    before = view_gain_m3(world, inspected, place[None], reach_m=5.0, **look)[0]
     inspect(world, inspected, place, **look)
-    after = news_m3(world, inspected, place[None], reach_m=5.0, **look)[0]
+    after = view_gain_m3(world, inspected, place[None], reach_m=5.0, **look)[0]
     assert before > 0.5
     assert after < 0.1 * before
 

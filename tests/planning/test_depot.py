@@ -67,7 +67,7 @@ for _ in range(10):
     box[:60, y:y + 20, x:x + 20] = True
     regions.append(np.flatnonzero(box).astype(np.int64))
 found = JointSearch(free, regions).between((7, 7, 7), (7, 245, 250))
-assert found.complete and found.ways
+assert found.complete and found.paths
 print(int(open("/proc/self/status").read().split("VmHWM:")[1].split()[0]) / 1024)
 """
 

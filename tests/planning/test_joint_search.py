@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from scipy.sparse.csgraph import dijkstra
 
 from mintpilot.planning.joint_search import Effort, JointSearch
-from mintpilot.planning.lazy import lazy_ways
+from mintpilot.planning.lazy import lazy_paths
 
 from .test_grid_search import check_path, no_corner_graph
 
@@ -107,7 +107,7 @@ def test_lazy_branching_agrees(world: tuple) -> None:
     free, regions, start, goal = random_world(*world)
     search = JointSearch(free, regions)
     box = BlackBox(search, (start, goal))
-    lazy = lazy_ways(box)
+    lazy = lazy_paths(box)
     joint = search.between(start, goal)
     assert box.calls <= 1 << len(regions)
     for blocked in range(1 << len(regions)):
@@ -144,7 +144,7 @@ def test_thirty_gaps_are_bounded_and_safe() -> None:
     assert safe.mask == 0
     assert safe.cost == pytest.approx(search.under(start, goal, everything)[0])
     assert found.best(0).cost == pytest.approx(240)
-    for way in found.ways:
+    for way in found.paths:
         assert way.cost >= 240
         check_path(free, start, goal, way.cost, way.path)
 
@@ -157,28 +157,28 @@ def test_more_regions_than_bits() -> None:
     assert not found.complete
     assert len(found.left_out) == 70 - 63
     assert not set(found.left_out) & {40, 41, 42, 43}
-    assert [round(w.cost, 9) for w in found.ways] == [round(w.cost, 9) for w in plain.ways]
-    assert [w.mask >> 40 for w in found.ways] == [w.mask for w in plain.ways]
+    assert [round(w.cost, 9) for w in found.paths] == [round(w.cost, 9) for w in plain.paths]
+    assert [w.mask >> 40 for w in found.paths] == [w.mask for w in plain.paths]
 
 
 def test_no_regions_is_one_shortest_path() -> None:
     free, _, start, goal = corridor(3)
-    (way,) = JointSearch(free, []).between(start, goal).ways
+    (way,) = JointSearch(free, []).between(start, goal).paths
     assert (way.cost, way.mask) == (24, 0)
 
 
 def test_start_is_goal_inside_a_region() -> None:
-    (way,) = JointSearch(np.ones((1, 3, 3), bool), [np.array([4])]).between((0, 1, 1), (0, 1, 1)).ways
+    (way,) = JointSearch(np.ones((1, 3, 3), bool), [np.array([4])]).between((0, 1, 1), (0, 1, 1)).paths
     assert (way.cost, way.mask) == (0, 1)
 
 
 def test_blocked_ends_have_no_way() -> None:
     free = np.ones((1, 3, 3), bool)
     free[0, 0, 0] = False
-    assert JointSearch(free, [np.array([4])]).between((0, 0, 0), (0, 2, 2)).ways == ()
+    assert JointSearch(free, [np.array([4])]).between((0, 0, 0), (0, 2, 2)).paths == ()
 
 
 def test_a_diagonal_move_touches_the_regions_beside_it() -> None:
     free = np.ones((1, 2, 2), bool)
-    ways = JointSearch(free, [np.array([1])]).between((0, 0, 0), (0, 1, 1)).ways
-    assert [(round(w.cost, 6), w.mask) for w in ways] == [(1.414214, 1), (2.0, 0)]
+    paths = JointSearch(free, [np.array([1])]).between((0, 0, 0), (0, 1, 1)).paths
+    assert [(round(w.cost, 6), w.mask) for w in paths] == [(1.414214, 1), (2.0, 0)]

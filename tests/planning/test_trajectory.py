@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import itertools
-
 import numpy as np
 import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
+from tests.oracles.clearance import densely, distances
 
 from mintpilot.core.errors import InfeasibleError, InputError
 from mintpilot.core.geometry import Floats, GridFrame
@@ -18,7 +17,6 @@ from mintpilot.planning.checks import check_path, check_trajectory
 from mintpilot.planning.flyable import known_flyable
 from mintpilot.planning.grid_search import shortest_path
 from mintpilot.planning.motion import SMOOTHING_S
-from mintpilot.planning.smoothing import BORDER_CELLS
 from mintpilot.planning.trajectory import YAW_RATE_RAD_S, plan_trajectory
 
 LIMITS = VehicleLimits()
@@ -83,13 +81,9 @@ def test_random_paths_stay_clear_and_within_limits(seed: int, speed: float | Non
     assert check_trajectory(t, map, LIMITS) == ""
     assert_within_limits(t, speed or LIMITS.cruise_mps)
     np.testing.assert_allclose(t.position_m[[0, -1]], path[[0, -1]], atol=1e-9)
-    # Every point of the curve, much finer than its samples.
-    fine = np.arange(0.0, t.duration_s, 0.003)
-    curve = np.stack([np.interp(fine, t.time_s, t.position_m[:, axis]) for axis in range(3)], axis=1)
-    # A point at the border of two cells, but for rounding, belongs to either.
-    spare_m = BORDER_CELLS * map.frame.resolution_m * np.array(list(itertools.product((-1, 1), repeat=3)))
-    flyable = [known_flyable(map, LIMITS)[tuple(map.frame.cells_of(curve + spare).T)] for spare in spare_m]
-    assert np.any(flyable, axis=0).all()
+    fine = densely(t.position_m, 0.01)
+    barred = map.cells != Cell.FREE
+    assert distances(fine, barred, map.frame.origin_m, 0.2, 0.5).min() >= LIMITS.clearance_m - 1e-6
 
 
 @settings(deadline=None, max_examples=40)

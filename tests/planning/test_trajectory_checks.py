@@ -88,7 +88,9 @@ def test_the_sentence_says_where_and_why() -> None:
     assert "(15, 15)" in check_path(path, with_cell(Cell.UNKNOWN, (5, 15, 15)), POINT_ROBOT).replace("(5, ", "(")
     assert "never seen" in check_path(path, with_cell(Cell.UNKNOWN, (5, 15, 15)), POINT_ROBOT)
     assert "is occupied" in check_path(path, with_cell(Cell.OCCUPIED, (5, 15, 15)), POINT_ROBOT)
-    assert "nearer than 0.40 m to something" in check_path(path, with_cell(Cell.OCCUPIED, (5, 17, 15)), LIMITS)
+    assert "nearer than 0.40 m to cell (5, 17, 15), which is occupied" in check_path(
+        path, with_cell(Cell.OCCUPIED, (5, 17, 15)), LIMITS
+    )
     beside = np.array([[0.7, 2.3, 1.1], [5.3, 2.3, 1.1]])
     closed = hall(regions=(cloud(Knowledge.NO),))
     assert "nearer than 0.40 m to region 'smoke-1'" in check_path(beside, closed, LIMITS)

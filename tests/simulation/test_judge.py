@@ -32,7 +32,7 @@ def test_an_uneventful_flight_is_a_success() -> None:
 @pytest.mark.parametrize(("toxic", "outcome"), [(True, Outcome.TOXIC_SMOKE), (False, Outcome.SUCCESS)])
 def test_smoke_counts_only_when_toxic(toxic: bool, outcome: Outcome) -> None:
     judge = SceneJudge(scene(smokes=(smoke(toxic=toxic),)), FlightRules())
-    assert judge.observe(np.arange(3.0), positions(START, (4.99, 2, 1), (5.01, 2, 1))) == (2 if toxic else None)
+    assert judge.observe(np.arange(3.0), positions(START, (4.72, 2, 1), (4.74, 2, 1))) == (2 if toxic else None)
     assert judge.final().outcome is outcome
 
 
@@ -137,3 +137,21 @@ def test_people_in_rooms_must_be_looked_at_from_the_viewpoint() -> None:
 def test_nobody_needs_to_find_people_who_are_well() -> None:
     well = Person(id="person-1", position_m=(8, 2, 0), must_be_found=False)
     assert SceneJudge(scene(persons=(well,)), FlightRules()).final().outcome is Outcome.SUCCESS
+
+
+@pytest.mark.parametrize(
+    ("place", "inside"),
+    [
+        ((4.74, 4, 1), True),
+        ((4.72, 4, 1), False),
+        ((6, 4, 3.05), True),
+        ((6, 4, 3.07), False),
+        ((4.8, 4, 3.05), True),
+        ((6, 4, 1), True),
+    ],
+)
+def test_toxic_smoke_is_touched_by_the_hull_not_by_its_centre(place, inside: bool) -> None:
+    """The cloud reaches from x = 5 to 7 and up to z = 3; the hull is 0.27 m in radius and 0.06 m in half height."""
+    judge = SceneJudge(scene(smokes=(smoke(toxic=True),)), FlightRules())
+    judge.observe(np.zeros(1), positions(place))
+    assert (judge.verdict() is not None) == inside

@@ -14,7 +14,7 @@ from mintpilot.core.motion import FollowTrajectory, MotionEnd, PerformAction
 from mintpilot.core.task import Action
 from mintpilot.core.trajectory import FlightEnd, Trajectory, VehicleState
 from mintpilot.simulation.kinematic import KinematicSimulator
-from mintpilot.simulation.obstacles import HULL_HALF_HEIGHT_M, Obstacles
+from mintpilot.simulation.obstacles import Obstacles
 from mintpilot.simulation.reference import BRAKING_MPS2, braked
 from mintpilot.simulation.scene import FlightRules, Person, Scene, Shape
 
@@ -77,8 +77,8 @@ def test_touching_is_hull_against_shape(
         grid = grid[np.linalg.norm(grid, axis=1) <= half.min()]
     off = grid + centre - point
     slack = 0.06  # of the cloud
-    hull = np.maximum(np.hypot(off[:, 0], off[:, 1]) - RULES.radius_m, np.abs(off[:, 2]) - HULL_HALF_HEIGHT_M)
-    touched = Obstacles(scene(solids=(solid,)), RULES.radius_m).first_touch(np.array([point]), np.zeros(1))
+    hull = np.maximum(np.hypot(off[:, 0], off[:, 1]) - RULES.radius_m, np.abs(off[:, 2]) - RULES.half_height_m)
+    touched = Obstacles(scene(solids=(solid,)), RULES).first_touch(np.array([point]), np.zeros(1))
     if hull.min() < -1e-9:
         assert touched == (0, "crate-1")
     elif hull.min() > slack:
@@ -146,7 +146,7 @@ def test_smoke_endurance_and_volume_end_the_flight() -> None:
     toxic = simulator(scene(smokes=(smoke(toxic=True),)))
     log = follow(toxic, line(START, (8, 2, 1.5)))
     assert log.end is FlightEnd.FAILED
-    assert log.position_m[-1, 0] == pytest.approx(5.0, abs=0.06)
+    assert log.position_m[-1, 0] == pytest.approx(5.0 - RULES.radius_m, abs=0.06)
     tired = simulator(rules=FlightRules(endurance_s=3.0))
     tired.begin_mission()
     assert tired.state().endurance_left_s == 3.0

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -17,10 +18,11 @@ from mintpilot.core.ports import TruthOracle
 from mintpilot.core.semantic_map import SemanticMap
 from mintpilot.core.task import Task
 from mintpilot.language.instruction import parse_instruction
+from mintpilot.mapping.listed_objects import with_solid_objects
 from mintpilot.mission_file.schema import MissionFile
 from mintpilot.mission_file.schema_base import attributes_of, place_of
 from mintpilot.mission_file.schema_core import asking_of, correlations_of, limits_of, mission_of, task_of, truths_of
-from mintpilot.mission_file.schema_map import map_of
+from mintpilot.mission_file.schema_map import load_bare_map, map_of
 from mintpilot.mission_file.schema_scene import ClosedRoomSpec, PersonSpec, SceneSpec
 from mintpilot.mission_file.schema_world import MapWorld, ScenarioWorld, SceneWorld
 from mintpilot.simulation.map_scene import scene_of_map
@@ -31,6 +33,8 @@ from mintpilot.simulation.truth import SceneTruth
 
 RESERVE = 0.2
 """Share of a battery that plans leave."""
+ROUNDING_M = 1e-6
+"""Rounding error of distances, metres, that no collision is made of."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -125,11 +129,19 @@ def _assembled(file: MissionFile, mission: Mission, scene: Scene, rules: FlightR
 
 
 def _from_map(file: MissionFile, world: MapWorld, base: Path, seed: int, parse: Parse) -> World:
-    map_ = map_of(world, base, file.priors)
+    bare = load_bare_map(world, base)
     start = place_of(world.start_m, world.height_m)
     truths = truths_of(file)
-    mission = mission_of(file, start_m=start, volume=map_.frame.box)
+    mission = mission_of(file, start_m=start, volume=bare.frame.box)
     task = task_of(file, layer_m=world.height_m) or parse(mission.instruction, home_m=mission.start_m)
+    map_ = map_of(
+        world,
+        base,
+        file.priors,
+        bare=bare,
+        goals_m=[goal.reference.position_m for goal in task.subgoals if goal.reference.position_m is not None],
+        clearance_m=mission.limits.clearance_m,
+    )
     wanted = wanted_of(map_, task, truths, start)
     scene = scene_of_map(
         map_,
@@ -140,18 +152,27 @@ def _from_map(file: MissionFile, world: MapWorld, base: Path, seed: int, parse: 
         places_m=wanted.places,
         must_be_found=wanted.people,
     )
-    rules = FlightRules(radius_m=min(0.27, mission.limits.radius_m), endurance_s=mission.limits.endurance_s)
     return World(
-        mission=replace(mission, limits=_with_reserve(mission.limits)),
+        mission=replace(mission, limits=_with_reserve(mission.limits), volume=map_.frame.box),
         task=task,
         scene=scene,
-        rules=rules,
+        rules=replace(_hull(mission.limits, flat=map_.frame.is_flat), endurance_s=mission.limits.endurance_s),
         truth=DeclaredTruth(truths),
-        map=map_,
+        map=with_solid_objects(map_, mission.limits.clearance_m),
         is_map=True,
         seed=seed,
         groups=correlations_of(file),
     )
+
+
+def _hull(limits: VehicleLimits, *, flat: bool) -> FlightRules:
+    """The largest upright hull of the usual proportions that the vehicle's radius allows, less rounding.
+
+    On a voxel map no part of it may be further from the centre than the radius; on a flat one only its width counts.
+    """
+    half_height_m = min(FlightRules().half_height_m, limits.radius_m / 5)
+    wide = limits.radius_m if flat else math.sqrt(limits.radius_m**2 - half_height_m**2)
+    return FlightRules(radius_m=wide - ROUNDING_M, half_height_m=half_height_m)
 
 
 def _with_reserve(limits: VehicleLimits) -> VehicleLimits:

@@ -28,13 +28,21 @@ class VehicleLimits:
     """Of any commanded motion."""
     endurance_s: float = float("inf")
     """Flight time that is left for the mission, seconds; longer plans do not exist."""
+    position_sigma_m: float = 0.0
+    """Standard deviation of the known position, metres; three times as much is added to the clearance."""
 
     def __post_init__(self) -> None:
         for name in ("radius_m", "cruise_mps", "max_acceleration_mps2", "endurance_s"):
             if not getattr(self, name) > 0:
                 raise MissionError(f"vehicle {name} = {getattr(self, name)}: must be above 0")
-        if not self.margin_m >= 0:
-            raise MissionError(f"vehicle margin_m = {self.margin_m}: must not be below 0")
+        for name in ("margin_m", "position_sigma_m"):
+            if not getattr(self, name) >= 0:
+                raise MissionError(f"vehicle {name} = {getattr(self, name)}: must not be below 0")
+
+    @property
+    def clearance_m(self) -> float:
+        """Distance kept between the vehicle's centre and whatever it must not touch, metres."""
+        return self.radius_m + self.margin_m + 3 * self.position_sigma_m
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -47,6 +47,8 @@ class MapObject:
     """In how many frames it was seen."""
     best_view: tuple[int, int, int, int, int] | None = None
     """Provenance: frame index and pixel box (left, top, right, bottom) of its largest view."""
+    solid: bool = True
+    """Whether it can be bumped into; False for marks and other things without matter. One without size never can."""
 
     @property
     def position_m(self) -> Vec3:

@@ -12,8 +12,8 @@ from mintpilot.core.geometry import Bools, Box, GridFrame
 from mintpilot.core.observation import Detection, Frame, RegionKind
 from mintpilot.core.plan import VehicleLimits
 from mintpilot.core.semantic_map import Cell, Knowledge, Region, SemanticMap
-from mintpilot.mapping.corridors import hugging
-from mintpilot.mapping.fusion import Draft, fused_objects, fused_regions, fused_rooms
+from mintpilot.mapping.corridors import off_corridor
+from mintpilot.mapping.fusion import FusionInput, fused_objects, fused_regions, fused_rooms
 from mintpilot.mapping.glow import Glow
 from mintpilot.mapping.identity import Names
 from mintpilot.mapping.objects import Tracks
@@ -134,16 +134,16 @@ class MapBuilder:
                 f"previous map on {known.frame}, this builder on {self._frame}: they must be the same lattice"
             )
         cells = self._voxels()
-        draft = Draft(
+        given = FusionInput(
             frame=self._frame,
             cells=cells,
             volume=self._volume,
             settings=self._settings,
             names=self._names,
             previous=known,
-            hull_m=self._limits.radius_m + self._limits.margin_m,
+            hull_m=self._limits.clearance_m,
         )
-        objects = fused_objects(self._tracks.all, draft)
+        objects = fused_objects(self._tracks.all, given)
         flames = [thing.box_m for thing in objects if thing.label == "fire"]
         blazing = self._blazing(flames)
         evidence = SmokeEvidence(solid=self._solid, free=cells == Cell.FREE, blazing=blazing)
@@ -152,7 +152,7 @@ class MapBuilder:
         blazing |= self._blazing(self._glow.boxes(clouds, flames, self._clouds.seen))
         cells[blazing] = Cell.OCCUPIED  # flames return hardly any depth, yet nobody flies through them
         cells[self._flown & self._inside] = Cell.FREE
-        regions = fused_regions(clouds, draft, self._priors[0])
+        regions = fused_regions(clouds, given, self._priors[0])
         flat = cells.reshape(-1)
         for region in regions:
             # Inside a cloud unknown voxels count as free: the region may be entered only after an explicit yes for
@@ -161,7 +161,7 @@ class MapBuilder:
                 here = flat[region.cells]
                 unsure = (here == Cell.UNKNOWN) & self._hugging(region, cells, blazing, known)
                 flat[region.cells] = np.where((here == Cell.OCCUPIED) | unsure, here, Cell.FREE)
-        rooms = fused_rooms(self._tracks.all, draft, self._priors[1])
+        rooms = fused_rooms(self._tracks.all, given, self._priors[1])
         self._last = SemanticMap(frame=self._frame, cells=cells, objects=objects, regions=regions, rooms=rooms)
         return self._last
 
@@ -172,13 +172,13 @@ class MapBuilder:
         """
         mask = np.zeros(cells.shape, bool)
         mask.reshape(-1)[cloud.cells] = True
-        near = hugging(
+        near = off_corridor(
             mask,
             cells == Cell.OCCUPIED,
             cells == Cell.FREE,
             ends=blazing,
             resolution_m=self._frame.resolution_m,
-            hull_m=self._limits.radius_m + self._limits.margin_m,
+            hull_m=self._limits.clearance_m,
         )
         if known is not None and cloud.passable is Knowledge.YES:
             near &= known.cells != Cell.FREE

@@ -1,4 +1,4 @@
-"""Ways through what cannot be seen: the middle of the gap, since walls go on inside a cloud."""
+"""Corridors through clouds that cannot be looked into: the middle of each gap, since walls go on inside a cloud."""
 
 from __future__ import annotations
 
@@ -13,34 +13,35 @@ from scipy.sparse.csgraph import dijkstra
 from mintpilot.core.geometry import Bools, Floats, Ints
 
 SHY_M = 2.0
-"""Further than this from what may go on inside the cloud nothing is doubted; lanes cost twice as much at this distance
-from it, and five times as much at half of it."""
+"""Distance, metres, from what may go on inside the cloud, beyond which nothing is doubted. Corridors cost twice as much
+at this distance from it, and five times as much at half of it."""
 BREADTH_M = 0.3
-"""How far the vehicle may be off the middle of a lane."""
+"""Distance that the vehicle may be off the middle of a corridor, metres."""
 TOUCHING = 1
-"""Only what stands inside a cloud, or no more voxels than this beside it, may go on inside."""
+"""Greatest distance from a cloud, voxels, of matter that may go on inside it."""
 DEAD_END_M = 0.5
-"""Distance kept where the cloud leads nowhere: whoever wants to go into it must still find room."""
+"""Distance kept from matter where the cloud leads nowhere, metres: whoever wants to go into it must still find room."""
 RING_M = 0.6
-"""What is connected is judged in a ring of this width around the cloud, besides the vehicle's own size."""
+"""Width of the ring around the cloud in which it is judged what the cloud connects, metres, besides the vehicle's own
+size."""
 CONTEXT_M = 6.0
-"""Ground further away from the cloud than this does not matter."""
+"""Distance from the cloud up to which ground is looked at, metres: ground further away changes nothing."""
 ROOMY_M2 = 4.0
-"""Pockets of free ground smaller than this need not stay connected."""
+"""Area of free ground, square metres, from which on it must stay connected; smaller pockets need not."""
 TALL_M = 0.6
-"""Walls and racks are taller than this; floors, roofs and things that lie about are not."""
+"""Height, metres, above which matter is a wall or rack; floors, roofs and things that lie about are lower."""
 MOST_LAYERS = 0.5
-"""A place is passable if it is so in this share of the cloud's layers."""
+"""Share of the cloud's layers in which a place must be passable to count as passable."""
 
 
-def hugging(
+def off_corridor(
     cloud: Bools, solid: Bools, free: Bools, *, ends: Bools | None = None, resolution_m: float, hull_m: float
 ) -> Bools:
-    """Unseen voxels of a cloud that are not to be counted on, because they lie off the lanes through it.
+    """Unseen voxels of a cloud that are not to be counted on, because they lie off the corridors through it.
 
     What is solid at the edge of a cloud often goes on inside, where no sensor sees it. So all roomy places that the
-    cloud connects are joined by lanes that keep away from that, in the middle of each gap. Lanes are the same at every
-    height. A cloud that leads nowhere has none; there only what is near to something solid is left out.
+    cloud connects are joined by corridors that keep away from that, in the middle of each gap. Corridors are the same
+    at every height. A cloud that leads nowhere has none; there only what is near to something solid is left out.
 
     Args:
         cloud: voxels of the cloud (nz, ny, nx).
@@ -69,10 +70,10 @@ def hugging(
         return near
     passable = ((cloud | free)[part] & (_away_m(hard, resolution_m) >= hull_m)).mean(axis=0) >= MOST_LAYERS
     around = ndimage.binary_dilation(inside, iterations=int(np.ceil((RING_M + hull_m) / resolution_m)) + 1)
-    shore = _roomy(passable & ~inside, resolution_m) & around
+    entries = _roomy(passable & ~inside, resolution_m) & around
     away_m = _away_m(beside[None], resolution_m)[0]
-    lanes = _lanes(shore, passable & inside, away_m, resolution_m, hull_m + BREADTH_M)
-    keep = away_m >= DEAD_END_M if lanes is None else lanes | (away_m >= SHY_M)
+    corridors = _corridors(entries, passable & inside, away_m, resolution_m, hull_m + BREADTH_M)
+    keep = away_m >= DEAD_END_M if corridors is None else corridors | (away_m >= SHY_M)
     near[part] = cloud[part] & ~free[part] & ~keep
     return near
 
@@ -91,13 +92,13 @@ def _away_m(solid: Bools, resolution_m: float) -> Floats:
     return away
 
 
-def _lanes(shore: Bools, passage: Bools, away_m: Floats, resolution_m: float, radius_m: float) -> Bools | None:
-    """Places (ny, nx) on lanes through the passage that join all parts of the shore which it joins; None for none."""
-    parts, count = ndimage.label(shore)
-    nodes = np.flatnonzero(shore | passage)
-    number = np.full(shore.size, -1, np.int64)
+def _corridors(entries: Bools, passage: Bools, away_m: Floats, resolution_m: float, radius_m: float) -> Bools | None:
+    """Places (ny, nx) on corridors that join all entries which the passage joins; None where there are none."""
+    parts, count = ndimage.label(entries)
+    nodes = np.flatnonzero(entries | passage)
+    number = np.full(entries.size, -1, np.int64)
     number[nodes] = np.arange(len(nodes))
-    graph = _graph(number.reshape(shore.shape), (1.0 + (SHY_M / np.maximum(away_m, 0.1)) ** 2).ravel()[nodes])
+    graph = _graph(number.reshape(entries.shape), (1.0 + (SHY_M / np.maximum(away_m, 0.1)) ** 2).ravel()[nodes])
     part = parts.ravel()[nodes]
     joined = list(range(count + 1))
     offers: list[tuple[float, int, int, int]] = []
@@ -110,15 +111,15 @@ def _lanes(shore: Bools, passage: Bools, away_m: Floats, resolution_m: float, ra
             best = int(there[np.argmin(cost[there])])
             if np.isfinite(cost[best]):
                 offers.append((float(cost[best]), a, b, best))
-    lanes = np.zeros(shore.shape, bool)
+    corridors = np.zeros(entries.shape, bool)
     for _, a, b, node in sorted(offers):
         if joined[a] == joined[b]:
             continue
         joined = [joined[a] if j == joined[b] else j for j in joined]
         while node >= 0:
-            _widen(lanes, int(nodes[node]), resolution_m, radius_m)
+            _widen(corridors, int(nodes[node]), resolution_m, radius_m)
             node = int(back[a][node])
-    return lanes if lanes.any() else None
+    return corridors if corridors.any() else None
 
 
 def _graph(number: Ints, weight: Floats) -> csr_array:
@@ -139,10 +140,12 @@ def _graph(number: Ints, weight: Floats) -> csr_array:
     return coo_array((np.tile(cost, 2), (np.concatenate([i, j]), np.concatenate([j, i]))), shape=(size, size)).tocsr()
 
 
-def _widen(lanes: Bools, place: int, resolution_m: float, radius_m: float) -> None:
-    """Adds the disc around a place of a lane."""
-    y, x = divmod(place, lanes.shape[1])
+def _widen(corridors: Bools, place: int, resolution_m: float, radius_m: float) -> None:
+    """Adds the disc around a place of a corridor."""
+    y, x = divmod(place, corridors.shape[1])
     reach = int(np.ceil(radius_m / resolution_m))
     rows, columns = slice(max(0, y - reach), y + reach + 1), slice(max(0, x - reach), x + reach + 1)
-    v, u = np.ogrid[rows.start : min(rows.stop, lanes.shape[0]), columns.start : min(columns.stop, lanes.shape[1])]
-    lanes[rows, columns] |= np.hypot(v - y, u - x) * resolution_m <= radius_m
+    v, u = np.ogrid[
+        rows.start : min(rows.stop, corridors.shape[0]), columns.start : min(columns.stop, corridors.shape[1])
+    ]
+    corridors[rows, columns] |= np.hypot(v - y, u - x) * resolution_m <= radius_m

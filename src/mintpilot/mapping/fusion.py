@@ -20,8 +20,8 @@ from mintpilot.mapping.wording import describe_all
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Draft:
-    """A map in the making."""
+class FusionInput:
+    """What the objects, regions and rooms of a map are fused with: its voxels, settings, and the map before."""
 
     frame: GridFrame
     cells: NDArray[np.uint8]
@@ -35,39 +35,39 @@ class Draft:
     """Radius and margin of the vehicle."""
 
 
-def fused_objects(tracks: Sequence[Track], draft: Draft) -> tuple[MapObject, ...]:
+def fused_objects(tracks: Sequence[Track], given: FusionInput) -> tuple[MapObject, ...]:
     """Objects seen often or surely enough, doors left out; ids from the previous map by nearness."""
-    settings = draft.settings
-    kept = [t for t in tracks if t.label != "door" and _credible(t, settings) and not _roofed(t, draft)]
+    settings = given.settings
+    kept = [t for t in tracks if t.label != "door" and _credible(t, settings) and not _roofed(t, given)]
     people = [t for t in kept if t.label == "person"]
     fires = [t for t in kept if t.label == "fire"]
     kept = [t for t in kept if not any(_limb_of(t, p) for p in people) and not any(_foot_of(t, f) for f in fires)]
-    old = draft.previous.objects if draft.previous is not None else ()
+    old = given.previous.objects if given.previous is not None else ()
     pairs = match([[closeness(t.box_m, o.box_m) if t.label == o.label else 0.0 for o in old] for t in kept])
     for thing in old:
-        draft.names.seen(thing.id)
-    objects = [t.as_object(old[pairs[i]].id if i in pairs else draft.names.new(t.label)) for i, t in enumerate(kept)]
+        given.names.seen(thing.id)
+    objects = [t.as_object(old[pairs[i]].id if i in pairs else given.names.new(t.label)) for i, t in enumerate(kept)]
     backed = set(pairs.values())
-    objects += [o for j, o in enumerate(old) if j not in backed and not _gone(o, tracks, draft)]
+    objects += [o for j, o in enumerate(old) if j not in backed and not _gone(o, tracks, given)]
     return tuple(sorted(objects, key=lambda o: _order(o.id)))
 
 
-def fused_regions(clouds: Sequence[Cloud], draft: Draft, prior_passable: float) -> tuple[Region, ...]:
+def fused_regions(clouds: Sequence[Cloud], given: FusionInput, prior_passable: float) -> tuple[Region, ...]:
     """One region per cloud, and every other region of the previous map unchanged.
 
     A cloud takes over the answer of the region that it overlaps. Where it overlaps several (two clouds turned out to be
     one), it is passable only if all of them are, and not passable as soon as one is not.
     """
-    old = list(draft.previous.regions) if draft.previous is not None else []
+    old = list(given.previous.regions) if given.previous is not None else []
     for region in old:
-        draft.names.seen(region.id)
-    masks = [cells_in(draft.frame, c.box_m) for c in clouds]
+        given.names.seen(region.id)
+    masks = [cells_in(given.frame, c.box_m) for c in clouds]
     smokes = [r for r in old if r.kind is RegionKind.SMOKE]
     shared = [[float(m.reshape(-1)[r.cells].sum()) for r in smokes] for m in masks]
     pairs = match(shared)
-    descriptions = describe_all(draft.volume, ["the grey smoke"] * len(clouds), [c.box_m.centre_m for c in clouds])
-    solid = draft.cells == Cell.OCCUPIED
-    inside = cells_in(draft.frame, draft.volume)
+    descriptions = describe_all(given.volume, ["the grey smoke"] * len(clouds), [c.box_m.centre_m for c in clouds])
+    solid = given.cells == Cell.OCCUPIED
+    inside = cells_in(given.frame, given.volume)
     result: list[Region] = []
     for i, (cloud, mask) in enumerate(zip(clouds, masks, strict=True)):
         cells = np.flatnonzero(mask & inside & ~solid).astype(np.int64)
@@ -77,7 +77,7 @@ def fused_regions(clouds: Sequence[Cloud], draft: Draft, prior_passable: float) 
         answers = {r.passable for r, n in zip(smokes, shared[i], strict=True) if n > 0}
         result.append(
             Region(
-                id=mine.id if mine else draft.names.new("smoke"),
+                id=mine.id if mine else given.names.new("smoke"),
                 kind=RegionKind.SMOKE,
                 cells=cells,
                 passable=_joint(answers),
@@ -92,22 +92,22 @@ def fused_regions(clouds: Sequence[Cloud], draft: Draft, prior_passable: float) 
     return tuple(sorted(result, key=lambda r: _order(r.id)))
 
 
-def fused_rooms(tracks: Sequence[Track], draft: Draft, prior_occupied: float) -> tuple[Room, ...]:
+def fused_rooms(tracks: Sequence[Track], given: FusionInput, prior_occupied: float) -> tuple[Room, ...]:
     """One room per closed door, with the answer and the search of the previous map; rooms of old stay."""
-    least, sure = draft.settings.door_sightings, draft.settings.sure_door
+    least, sure = given.settings.door_sightings, given.settings.sure_door
     doors = [t for t in tracks if t.label == "door" and (len(t.frames) >= least or t.surest >= sure)]
-    old = draft.previous.rooms if draft.previous is not None else ()
+    old = given.previous.rooms if given.previous is not None else ()
     for room in old:
-        draft.names.seen(room.id)
+        given.names.seen(room.id)
     pairs = match([[same_door(t.box_m, r.door_m) for r in old] for t in doors])
     names = [f"the closed room with the {_colour(t)}door" for t in doors]
-    descriptions = describe_all(draft.volume, names, [t.box_m.centre_m for t in doors])
+    descriptions = describe_all(given.volume, names, [t.box_m.centre_m for t in doors])
     result = []
     for i, door in enumerate(doors):
         mine = old[pairs[i]] if i in pairs else None
-        viewpoint: Vec3 = viewpoint_of(door, draft.frame, draft.cells, draft.hull_m, draft.settings)
+        viewpoint: Vec3 = viewpoint_of(door, given.frame, given.cells, given.hull_m, given.settings)
         room = Room(
-            id=mine.id if mine else draft.names.new("room"),
+            id=mine.id if mine else given.names.new("room"),
             door_m=door.box_m,
             viewpoint_m=viewpoint,
             prior_occupied=prior_occupied,
@@ -158,22 +158,22 @@ def _foot_of(track: Track, fire: Track) -> bool:
     return flames.lo_m[0] <= x <= flames.hi_m[0] and flames.lo_m[1] <= y <= flames.hi_m[1]
 
 
-def _roofed(track: Track, draft: Draft) -> bool:
+def _roofed(track: Track, given: FusionInput) -> bool:
     """True for goods on a shelf or fragments of a rack: something solid is right above most of the thing."""
     if track.label != "box":
         return False
     box = track.box_m
-    lo = (box.lo_m[0], box.lo_m[1], box.hi_m[2] + 1.5 * draft.frame.resolution_m)
+    lo = (box.lo_m[0], box.lo_m[1], box.hi_m[2] + 1.5 * given.frame.resolution_m)
     above = Box(lo_m=lo, hi_m=(box.hi_m[0], box.hi_m[1], max(lo[2], box.hi_m[2] + 1.2)))
-    column = cells_in(draft.frame, above)
+    column = cells_in(given.frame, above)
     if not column.any():
         return False
-    return float((draft.cells[column] == Cell.OCCUPIED).mean()) > 0.2
+    return float((given.cells[column] == Cell.OCCUPIED).mean()) > 0.2
 
 
-def _gone(thing: MapObject, tracks: Sequence[Track], draft: Draft) -> bool:
+def _gone(thing: MapObject, tracks: Sequence[Track], given: FusionInput) -> bool:
     """True when a thing of old was absorbed by a track, or its place is now seen free."""
     if any(t.label == thing.label and closeness(t.box_m, thing.box_m) > 0 for t in tracks):
         return True
-    inside = draft.cells[cells_in(draft.frame, thing.box_m)]
+    inside = given.cells[cells_in(given.frame, thing.box_m)]
     return inside.size > 0 and float((inside == Cell.FREE).mean()) > 0.9

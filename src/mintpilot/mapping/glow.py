@@ -11,11 +11,11 @@ from mintpilot.core.observation import Detection
 from mintpilot.mapping.smoke import Cloud, cells_in
 
 EXPLAINED_M = 2.0
-"""Light this near to flames that were seen is theirs."""
+"""Distance from flames that were seen within which light is theirs, metres."""
 WIDEST_M = 2.5
-"""Lit fronts no further apart than this belong to the same flames."""
+"""Distance between lit fronts up to which they belong to the same flames, metres."""
 LEAST_M3 = 0.05
-"""Less smoke than this in the light of flames is a reflection."""
+"""Amount of smoke in the light of flames below which it is a reflection."""
 
 
 class Glow:

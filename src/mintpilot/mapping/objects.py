@@ -109,7 +109,7 @@ class Tracks:
 
 
 PERSON_M = 1.3
-"""Parts of people nearer than this belong to one person."""
+"""Distance between parts of people up to which they belong to one person, metres."""
 
 
 def _alike(track: Track, detection: Detection) -> float:

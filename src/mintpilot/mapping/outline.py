@@ -12,15 +12,18 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
+from mintpilot.core.compiled import compiled
 from mintpilot.core.errors import MapError
 from mintpilot.core.geometry import Box, Floats, GridFrame, Ints
 from mintpilot.core.observation import RegionKind
 from mintpilot.core.semantic_map import Cell, Region, SemanticMap
-from mintpilot.mapping.occupancy import RosMapHeader, read_cells, read_ros_header
+from mintpilot.mapping.occupancy import read_cells, read_ros_header
 from mintpilot.mapping.picture_map import read_picture
 
 _SLACK = 1e-9
 """In cells: edges on a cell's border do not reach into the cell next to it."""
+_SHIFT_SLACK = 1e-3
+"""In cells: two lattices that are shifted against each other by less than this are one."""
 
 
 def cells_in_box(frame: GridFrame, box: Box) -> Ints:
@@ -57,7 +60,7 @@ def cells_in_polygon(
     if (hi <= lo).any():
         return np.zeros(0, np.int64)
     in_cells = (corners - frame.origin_m[:2]) / frame.resolution_m - lo[:0:-1]
-    layer = _polygon_mask(in_cells, ny=int(hi[1] - lo[1]), nx=int(hi[2] - lo[2]))
+    layer: NDArray[np.bool_] = _polygon_mask(in_cells, int(hi[1] - lo[1]), int(hi[2] - lo[2]))
     return _flat(frame, lo, np.broadcast_to(layer, (int(hi[0] - lo[0]), *layer.shape)))
 
 
@@ -102,30 +105,34 @@ def _mask_on_map(frame: GridFrame, path: Path) -> NDArray[np.bool_]:
         raise MapError(f"mask '{path}' needs a flat map; on a voxel map outline the region as a box or polygon")
     _, ny, nx = frame.shape
     if path.suffix not in (".yaml", ".yml"):
-        grey, opaque = read_picture(path)
-        if grey.shape != (ny, nx):
-            rows, columns = grey.shape
+        mask = read_picture(path, lambda shades, white: (shades / white < 0.5).astype(np.uint8), hidden=0) == 1
+        if mask.shape != (ny, nx):
+            rows, columns = mask.shape
             raise MapError(
                 f"mask '{path}' is {columns} x {rows} pixels, the map {nx} x {ny}; give one of the same size"
             )
-        return np.asarray((grey < 0.5) & opaque)
+        return np.asarray(mask)
     header = read_ros_header(path)
     if not np.isclose(header.resolution_m, frame.resolution_m, rtol=1e-6):
         raise MapError(
             f"mask '{path}' has {header.resolution_m} m a pixel, the map {frame.resolution_m}; export both alike"
         )
-    return _shifted(frame, header, read_cells(header) == Cell.OCCUPIED)
+    cells, origin_m = read_cells(header)
+    return _shifted(frame, origin_m, cells == Cell.OCCUPIED)
 
 
-def _shifted(frame: GridFrame, header: RosMapHeader, mask: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """The mask on the map's lattice, by the two origins; half cells are rounded."""
+def _shifted(frame: GridFrame, origin_m: tuple[float, float], mask: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """The mask on the map's lattice, by the two origins: every cell that shares some area with one of the mask."""
     _, ny, nx = frame.shape
-    dx, dy = (round((header.origin_m[i] - frame.origin_m[i]) / frame.resolution_m) for i in (0, 1))
+    off = [(origin_m[i] - frame.origin_m[i]) / frame.resolution_m for i in (0, 1)]
+    across, up = ({int(np.floor(o + _SHIFT_SLACK)), int(np.ceil(o - _SHIFT_SLACK))} for o in off)
     on_map = np.zeros((ny, nx), bool)
-    rows, columns = np.nonzero(mask)
-    rows, columns = rows + dy, columns + dx
-    inside = (rows >= 0) & (rows < ny) & (columns >= 0) & (columns < nx)
-    on_map[rows[inside], columns[inside]] = True
+    for dx in across:
+        for dy in up:
+            rows, columns = np.nonzero(mask)
+            rows, columns = rows + dy, columns + dx
+            inside = (rows >= 0) & (rows < ny) & (columns >= 0) & (columns < nx)
+            on_map[rows[inside], columns[inside]] = True
     return on_map
 
 
@@ -145,29 +152,39 @@ def _flat(frame: GridFrame, lo: Ints, mask: NDArray[np.bool_]) -> Ints:
     return indices
 
 
-def _polygon_mask(corners: Floats, *, ny: int, nx: int) -> NDArray[np.bool_]:
-    """Which cells (ny, nx) overlap the polygon, corners in cells: those with the centre inside or an edge through."""
-    xs, ys = np.arange(nx), np.arange(ny)
-    inside = np.zeros((ny, nx), bool)
-    touched = np.zeros((ny, nx), bool)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        for (ax, ay), (bx, by) in zip(corners, np.roll(corners, -1, axis=0), strict=True):
-            crosses = (ay > ys + 0.5) != (by > ys + 0.5)
-            at_x = ax + (ys + 0.5 - ay) / (by - ay) * (bx - ax)
-            inside ^= crosses[:, None] & (xs + 0.5 < at_x[:, None])
-            x_in, x_out = _passage(ax, bx, xs)
-            y_in, y_out = _passage(ay, by, ys)
-            enter = np.maximum(np.maximum(x_in, y_in[:, None]), 0)
-            leave = np.minimum(np.minimum(x_out, y_out[:, None]), 1)
-            touched |= enter < leave
-    return inside | touched
+@compiled(error_model="numpy")
+def _polygon_mask(corners: Floats, ny: int, nx: int) -> NDArray[np.bool_]:
+    """Which cells (ny, nx) overlap the polygon, corners in cells: those with the centre inside or an edge through.
 
-
-def _passage(a: float, b: float, starts: Ints) -> tuple[Floats, Floats]:
-    """Along a segment from a to b, the part (from, to) of its length over which it is inside each cell's slab."""
-    lo, hi = starts + _SLACK, starts + 1 - _SLACK
-    if a == b:
-        within = (lo < a) & (a < hi)
-        return np.where(within, -np.inf, np.inf), np.where(within, np.inf, -np.inf)
-    first, second = (lo - a) / (b - a), (hi - a) / (b - a)
-    return np.minimum(first, second), np.maximum(first, second)
+    Each edge is followed through the rows that it crosses. Where it crosses the middle of a row, all centres to its
+    left change sides; that is noted at the last of them, and summed up from right to left in the end.
+    """
+    changes = np.zeros((ny, nx), np.bool_)
+    touched = np.zeros((ny, nx), np.bool_)
+    for edge in range(len(corners)):
+        ax, ay = corners[edge - 1]
+        bx, by = corners[edge]
+        low, high = min(ay, by), max(ay, by)
+        for row in range(max(0, int(np.floor(low))), min(ny, int(np.floor(high)) + 1)):
+            middle = row + 0.5
+            if (ay > middle) != (by > middle):
+                last = int(np.ceil(ax + (middle - ay) / (by - ay) * (bx - ax) - 0.5)) - 1
+                if last >= 0:
+                    changes[row, min(last, nx - 1)] ^= True
+            bottom, top = max(low, row + _SLACK), min(high, row + 1 - _SLACK)
+            if bottom > top or (bottom == top and ay != by):
+                continue
+            if ay == by:
+                x0, x1 = min(ax, bx), max(ax, bx)
+            else:
+                x0, x1 = ax + (bottom - ay) / (by - ay) * (bx - ax), ax + (top - ay) / (by - ay) * (bx - ax)
+                x0, x1 = min(x0, x1), max(x0, x1)
+            for column in range(max(0, int(np.floor(x0)) - 1), min(nx, int(np.floor(x1)) + 1)):
+                if column + 1 - _SLACK > x0 and column + _SLACK < x1:
+                    touched[row, column] = True
+    for row in range(ny):
+        inside = False
+        for column in range(nx - 1, -1, -1):
+            inside ^= changes[row, column]
+            touched[row, column] |= inside
+    return touched

@@ -32,25 +32,25 @@ class MappingSettings:
     free_below: float = -0.3
     """Log-odds below which a voxel is free; between the two it is unknown."""
     sure_score: float = 0.9
-    """An object seen once only is kept from this score on."""
+    """Score from which an object that was seen once only is kept."""
     fire_margin_m: float = 0.4
-    """Nobody flies nearer than this to flames that were seen."""
+    """Clearance kept from flames that were seen, metres."""
     door_sightings: int = 4
-    """A door is kept when it was seen in so many frames, or once for certain."""
+    """Number of frames in which a door must be seen to be kept, if never for certain."""
     sure_door: float = 0.9
     """Score from which one sighting of a door is certain."""
     smoke_share: float = 0.4
-    """A voxel belongs to a cloud's front when at least this share of the frames that tell of it show smoke there."""
+    """Share of the frames that tell of a voxel which must show smoke there for it to belong to a cloud's front."""
     smoke_margin_m: float = 0.4
-    """A cloud is this much larger than its visible front: its thin edge is seen through."""
+    """Width of a cloud's thin edge, metres, which is seen through and added to its visible front."""
     smoke_gap_m: float = 0.8
-    """Smoke points further apart than this belong to different clouds."""
+    """Distance between smoke points, metres, above which they belong to different clouds."""
     widest_inside_m: float = 2.5
-    """Two fronts no further apart than this may be the sides of one cloud."""
+    """Distance between two fronts, metres, up to which they may be the sides of one cloud."""
     least_smoke_m3: float = 0.4
-    """A cloud of which less than this volume was seen is noise."""
+    """Volume of a cloud, cubic metres, below which it is noise."""
     least_smoke_height_m: float = 1.0
-    """A cloud less high than this is noise."""
+    """Height of a cloud, metres, below which it is noise."""
     viewpoint_m: float = 1.2
     """Distance of a room's viewpoint from its door."""
     viewpoint_height_m: float = 1.3

@@ -13,11 +13,11 @@ from mintpilot.core.observation import Detection
 from mintpilot.mapping.settings import MappingSettings
 
 STRAY = 0.12
-"""A slice of a cloud with less than this share of the voxels of its thick slices does not belong to it."""
+"""Share of the voxels of a cloud's thick slices that a slice must have to belong to it."""
 
 
 FREE_BETWEEN = 0.25
-"""With no more than this share of known free space between them, two near clouds are one."""
+"""Share of known free space between two near clouds up to which they are one."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

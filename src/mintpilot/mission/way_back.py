@@ -9,11 +9,11 @@ import numpy as np
 from mintpilot.core.errors import InfeasibleError
 from mintpilot.core.geometry import Floats
 from mintpilot.core.plan import VehicleLimits
-from mintpilot.core.semantic_map import Cell, Knowledge, SemanticMap
+from mintpilot.core.semantic_map import Knowledge, SemanticMap
 from mintpilot.core.trajectory import Trajectory, VehicleState
 from mintpilot.planning.checks import check_trajectory
 from mintpilot.planning.flyable import known_flyable
-from mintpilot.planning.terrain import start_cell
+from mintpilot.planning.terrain import can_start
 from mintpilot.planning.trajectory import plan_trajectory
 
 LONGEST_M = 8.0
@@ -24,11 +24,7 @@ APART_M = 0.2
 
 def is_stranded(map: SemanticMap, limits: VehicleLimits, state: VehicleState) -> bool:
     """Whether no plan could start from where the drone is: a cloud was found around it, say."""
-    try:
-        start_cell(map.frame, known_flyable(map, limits), map.cells != Cell.FREE, state.position_m)
-    except InfeasibleError:
-        return True
-    return False
+    return not can_start(map, limits, state.position_m)
 
 
 def way_back(map: SemanticMap, limits: VehicleLimits, state: VehicleState, track_m: Floats) -> Trajectory | None:

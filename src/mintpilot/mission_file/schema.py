@@ -34,6 +34,8 @@ class VehicleSpec(Spec):
     """No part of the vehicle is further from its centre, metres."""
     margin_m: NotNegative = 0.1
     """Clearance kept besides the radius, metres."""
+    position_sigma_m: NotNegative = 0.0
+    """Standard deviation of the known position, metres; three times as much is added to the margin."""
     cruise_mps: Positive = 1.5
     """Speed on straight legs, metres per second."""
     max_acceleration_mps2: Positive = 2.0

@@ -13,7 +13,6 @@ from mintpilot.mission_file.schema_base import (
     Place,
     Point2,
     Point3,
-    Positive,
     Probability,
     Several,
     Spec,
@@ -90,7 +89,7 @@ class RoomSpec(Spec):
 
 
 class ObjectSpec(Spec):
-    """A thing on the map that an instruction may mean."""
+    """A thing on the map that an instruction may mean. It is solid, where it is and as large as it is."""
 
     id: Name
     """Unique name, e.g. `box-1`."""
@@ -99,6 +98,8 @@ class ObjectSpec(Spec):
     position_m: Place
     """Its centre."""
     size_m: Annotated[Point3, Field(description="Edge lengths [x, y, z], metres.")] = (0.4, 0.4, 0.4)
+    solid: bool = True
+    """Whether it can be bumped into. An object of size [0, 0, 0] never can."""
     attributes: Attributes = Field(default_factory=dict)
     """What can be said of it: `{colour: red, size: small}`."""
 
@@ -108,7 +109,7 @@ class MapWorld(Spec):
 
     map: Words
     """A ROS map_server file (`.yaml`) or a MovingAI map (`.map`, `.3dmap`); relative to the mission file."""
-    resolution_m: Positive | None = None
+    resolution_m: Annotated[float, Field(ge=1e-4, le=1e4)] | None = None
     """Edge of a cell of a MovingAI map, metres; default 1. A ROS map names its own."""
     height_m: Annotated[float, Field(ge=0)] = 1.0
     """Height at which a flat map is flown, metres."""

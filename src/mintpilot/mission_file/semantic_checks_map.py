@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 from mintpilot.core.errors import MintPilotError
 from mintpilot.core.semantic_map import Cell, SemanticMap
+from mintpilot.mapping.listed_objects import with_solid_objects
 from mintpilot.mission_file.form_checks import show
 from mintpilot.mission_file.schema import MissionFile
 from mintpilot.mission_file.schema_base import place_of
-from mintpilot.mission_file.schema_map import ROS_SUFFIXES, is_flat, load_bare_map, regions_of
+from mintpilot.mission_file.schema_core import limits_of
+from mintpilot.mission_file.schema_map import ROS_SUFFIXES, is_flat, load_bare_map, object_of, regions_of
 from mintpilot.mission_file.schema_world import MapWorld, RegionSpec, RoomSpec
 from mintpilot.mission_file.semantic_checks_scene import box_fault, repeated_ids
 from mintpilot.mission_file.yaml_places import Fault, Path_
+from mintpilot.planning.clearance import TOLERANCE_M, surroundings
 
 
 def map_faults(mission: MissionFile, world: MapWorld, base: Path) -> Iterator[Fault]:
@@ -38,10 +42,33 @@ def map_faults(mission: MissionFile, world: MapWorld, base: Path) -> Iterator[Fa
     except MintPilotError as error:
         yield _fault(("world", "map"), str(error))
         return
-    yield from _place_faults(mission, world, bare)
+    faults = list(_place_faults(mission, world, bare))
+    yield from faults
+    sized = [thing for thing in world.objects if min(thing.size_m) >= 0]
+    if not any(fault.path[:2] == ("world", "start_m") for fault in faults):
+        objects = tuple(object_of(spec, world.height_m) for spec in sized)
+        yield from _start_faults(mission, world, replace(bare, objects=objects))
     for index, (spec, faults) in enumerate(zip(world.regions, shapes, strict=True)):
         if not faults:
             yield from _coverage_faults(mission, spec, bare, base, ("world", "regions", index))
+
+
+def _start_faults(mission: MissionFile, world: MapWorld, bare: SemanticMap) -> Iterator[Fault]:
+    """Whether the vehicle's body fits where it starts, among walls and solid objects."""
+    limits = limits_of(mission)
+    start = place_of(world.start_m, world.height_m)
+    filled = with_solid_objects(bare, limits.radius_m)
+    near = surroundings(filled, [start], limits.radius_m)
+    gap_m = float(near.least_gaps([start])[0]) * bare.frame.resolution_m
+    if gap_m < limits.radius_m - TOLERANCE_M:
+        what = "something occupied or unknown"
+        if near.least_gaps([start])[0] < surroundings(bare, [start], limits.radius_m).least_gaps([start])[0]:
+            what = "an object"
+        yield _fault(
+            ("world", "start_m"),
+            f"{show(list(world.start_m))} is {gap_m:.2f} m from {what}, nearer than the vehicle's radius of "
+            f"{limits.radius_m:g} m; start further away",
+        )
 
 
 def _fault(path: Path_, message: str) -> Fault:

@@ -13,19 +13,23 @@ def approach_cell(terrain: Terrain, site: Site) -> Ints | None:
     """The cell (3,) from which a site is served; None where nothing within reach can be flown to.
 
     Among the cells within ``reach_m`` that can be reached if every gap turns out well: those that see the site first,
-    then those outside open regions, then the nearest one, then the lowest index.
+    then those outside open regions, then the nearest one, then the lowest index. Where cells are so large that there is
+    none, those up to an edge further away count, too: beside or above a thing that fills one of them.
     """
     frame = terrain.frame
     position = np.array([site.position_m])
     middle = frame.cells_of(position)[0]
     if frame.is_flat:
         middle[0] = 0
-    cells = cells_around(frame, middle, int(np.ceil(site.reach_m / frame.resolution_m)) + 1)
+    cells = cells_around(frame, middle, int(np.ceil(site.reach_m / frame.resolution_m)) + 2)
     cells = cells[terrain.reachable[tuple(cells.T)]]
     away = distances_m(frame, cells, site.position_m)
-    cells, away = cells[away <= site.reach_m + 1e-9], away[away <= site.reach_m + 1e-9]
+    within = away <= site.reach_m + 1e-9
+    if not within.any():
+        within = away <= site.reach_m + frame.resolution_m + 1e-9
+    cells, away = cells[within], away[within]
     if not len(cells):
-        return _own_cell(terrain, middle)
+        return None
     order = np.lexsort(
         (
             np.ravel_multi_index(tuple(cells.T), frame.shape),
@@ -35,12 +39,6 @@ def approach_cell(terrain: Terrain, site: Site) -> Ints | None:
         )
     )
     return np.asarray(cells[order[0]], np.int64)
-
-
-def _own_cell(terrain: Terrain, middle: Ints) -> Ints | None:
-    """The site's own cell, for reaches smaller than a cell."""
-    inside = bool(terrain.frame.contains(middle)[0])
-    return middle if inside and terrain.reachable[tuple(middle)] else None
 
 
 def sees(terrain: Terrain, cells: Ints, site: Site) -> Bools:

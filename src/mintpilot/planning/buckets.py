@@ -33,7 +33,7 @@ RING = 64
 PER_EDGE = 8.0
 """Buckets per edge of cost."""
 SLACK = 1e-9
-"""Costs closer than this are equal: they are sums of the same numbers in another order."""
+"""Difference of costs, edges, up to which they are equal: they are sums of the same numbers in another order."""
 CLOSED = 64
 """Added to the last move of a node that A* has expanded."""
 KNOWN = -64

@@ -1,34 +1,31 @@
-"""The last gate before anything is flown: is every point of it known to be flyable?
+"""The last gate before anything is flown: does the body keep its clearance everywhere on the way?
 
-Called by the loop for every plan and every trajectory, whoever made it. Shares no code with the making of trajectories.
-Every cell that a piece between two points passes through counts, found exactly by cutting the pieces at the cells'
-borders. A point within a millionth of a cell of a border belongs to either side.
+Called by the loop for every plan and every trajectory, whoever made it. It shares the exact distances of
+`mintpilot.planning.clearance` with the making of trajectories, and nothing else: no search, no field of distances.
 """
 
 from __future__ import annotations
 
-from itertools import product
-
 import numpy as np
 
-from mintpilot.core.geometry import Bools, Floats, Ints
+from mintpilot.core.geometry import Floats
 from mintpilot.core.plan import VehicleLimits
 from mintpilot.core.semantic_map import Cell, Knowledge, SemanticMap
 from mintpilot.core.trajectory import Trajectory
-from mintpilot.planning.flyable import known_flyable, region_reach
+from mintpilot.planning.clearance import TOLERANCE_M, Surroundings, surroundings
 
 START_SLACK_M = 0.5
-"""How far from flyable space a flight may begin, metres (take-off beside something)."""
-_TOUCH = 1e-6  # cells
+"""Length of the way, metres, on which a flight that begins too near to something may leave it (take-off beside it)."""
 _STRAIGHT_M = 0.01
 
 
 def check_path(path_m: Floats, map: SemanticMap, limits: VehicleLimits) -> str:
     """Whether a vehicle may fly along the straight pieces of this path.
 
-    Every cell on the way must be known flyable; regions count as such only with `Knowledge.YES`. The beginning is
-    excepted: it may lie up to `START_SLACK_M` from flyable space as long as the straight way there stays in free
-    cells outside every region that is not known passable.
+    Everywhere on the way its centre must be at least `VehicleLimits.clearance_m` away from every cell that is occupied
+    or unknown, from every region that is not `Knowledge.YES`, and from the grid's border. The beginning is excepted:
+    within `START_SLACK_M` of the start it may be nearer, as long as the way is straight, outside of all these, and
+    never nearer than the start itself.
 
     Args:
         path_m: points (n, 3), metres.
@@ -43,16 +40,15 @@ def check_path(path_m: Floats, map: SemanticMap, limits: VehicleLimits) -> str:
         return f"the path has shape {points.shape} instead of (n, 3) with n at least 1"
     if not np.isfinite(points).all():
         return f"way-point {int(np.argmin(np.isfinite(points).all(axis=1)))} is not a finite number"
-    spots = (points - np.asarray(map.frame.origin_m)) / map.frame.resolution_m
-    inside = ((spots >= -_TOUCH) & (spots <= np.asarray(map.frame.shape[::-1]) + _TOUCH)).all(axis=1)
+    box = map.frame.box
+    inside = ((points >= np.asarray(box.lo_m) - TOLERANCE_M) & (points <= np.asarray(box.hi_m) + TOLERANCE_M)).all(
+        axis=1
+    )
     if not inside.all():
-        return _sentence(spots[int(np.argmin(inside))], map, limits)
-    visited = _visited(spots)
-    flyable = _is(known_flyable(map, limits), visited)
-    fine = flyable | _leaving(visited, flyable, map)
-    if fine.all():
-        return ""
-    return _sentence(visited[int(np.argmin(fine))], map, limits)
+        return f"{_at(points[int(np.argmin(inside))])} leaves the map"
+    near = surroundings(map, points, limits.clearance_m)
+    points, piece = first_breach(points, near)
+    return "" if piece < 0 else _sentence(points[piece], points[min(piece + 1, len(points) - 1)], map, near)
 
 
 def check_trajectory(trajectory: Trajectory, map: SemanticMap, limits: VehicleLimits) -> str:
@@ -69,84 +65,69 @@ def check_trajectory(trajectory: Trajectory, map: SemanticMap, limits: VehicleLi
     return check_path(position, map, limits)
 
 
-def _visited(spots: Floats) -> Floats:
-    """One spot (m, 3) in the middle of each passage through a cell, in order of the way; all in cells ``[x, y, z]``."""
-    if len(spots) == 1:
-        return spots
-    a, d = spots[:-1], np.diff(spots, axis=0)
-    pieces, shares = [np.arange(len(d)), np.arange(len(d))], [np.zeros(len(d)), np.ones(len(d))]
-    for axis in range(3):
-        low = np.ceil(np.minimum(a[:, axis], a[:, axis] + d[:, axis]))
-        count = np.maximum(np.floor(np.maximum(a[:, axis], a[:, axis] + d[:, axis])) - low + 1, 0).astype(np.int64)
-        count[d[:, axis] == 0] = 0
-        piece = np.repeat(np.arange(len(d)), count)
-        border = low[piece] + np.arange(len(piece)) - np.repeat(np.cumsum(count) - count, count)
-        pieces.append(piece)
-        shares.append(np.clip((border - a[piece, axis]) / d[piece, axis], 0.0, 1.0))
-    piece, share = np.concatenate(pieces), np.concatenate(shares)
-    order = np.lexsort((share, piece))
-    piece, share = piece[order], share[order]
-    long = np.linalg.norm(d, axis=1)[piece[:-1]] * np.diff(share) > _TOUCH
-    passage = (np.diff(piece) == 0) & long
-    middle = (share[:-1] + share[1:])[passage] / 2
-    inner = a[piece[:-1][passage]] + d[piece[:-1][passage]] * middle[:, None]
-    visited: Floats = np.concatenate([spots[:1], inner, spots[-1:]])
-    return visited
+def first_breach(points_m: Floats, near: Surroundings) -> tuple[Floats, int]:
+    """The first piece of a path that comes too near to something and is not excepted as its beginning.
+
+    Returns:
+        (the points (m, 3), one more than given where a piece was cut at the end of the beginning; number of the piece,
+        -1 where all is well).
+    """
+    rounding = TOLERANCE_M / near.frame.resolution_m
+    least = near.keep - rounding
+    gaps = near.least_gaps(points_m)
+    if (gaps >= least).all():
+        return points_m, -1
+    start_gap = float(near.least_gaps(points_m[:1])[0])
+    if rounding < start_gap < least:
+        points_m, beginning = _cut(points_m)
+        gaps = near.least_gaps(points_m)
+        wanted = np.full(len(gaps), least)
+        wanted[:beginning] = max(start_gap - rounding, rounding)
+        short = np.flatnonzero(gaps < least)
+        if (gaps >= wanted).all() and _is_straight(points_m[: short[-1] + 2]):
+            return points_m, -1
+    return points_m, int(np.argmax(gaps < least))
 
 
-def _is(flags: Bools, spots: Floats) -> Bools:
-    """Which spots (n, 3) lie in a flagged cell; on a border, either side will do."""
-    low, high = np.floor(spots - _TOUCH).astype(np.int64), np.floor(spots + _TOUCH).astype(np.int64)
-    found = np.zeros(len(spots), bool)
-    for sides in product((low, high), repeat=3):
-        cells = np.stack([sides[axis][:, axis] for axis in (2, 1, 0)], axis=1)
-        inside = np.all((cells >= 0) & (cells < flags.shape), axis=1)
-        found[inside] |= flags[tuple(cells[inside].T)]
-    return found
+def _cut(points: Floats) -> tuple[Floats, int]:
+    """The path with a point where it first is `START_SLACK_M` from its start, and the number of pieces before that."""
+    away = np.linalg.norm(points - points[0], axis=1)
+    beyond = np.flatnonzero(away > START_SLACK_M)
+    if not len(beyond):
+        return points, len(points) - 1
+    last = int(beyond[0])
+    a, d = points[last - 1] - points[0], points[last] - points[last - 1]
+    b, c = float(a @ d), float(a @ a) - START_SLACK_M**2
+    share = (-b + np.sqrt(max(b * b - float(d @ d) * c, 0.0))) / float(d @ d)
+    point = points[last - 1] + min(max(share, 0.0), 1.0) * d
+    return np.concatenate([points[:last], point[None], points[last:]]), last
 
 
-def _leaving(visited: Floats, flyable: Bools, map: SemanticMap) -> Bools:
-    """Which of the visited spots belong to an allowed straight way from the start into flyable space."""
-    none = np.zeros(len(visited), bool)
-    distance = np.linalg.norm(visited - visited[0], axis=1) * map.frame.resolution_m
-    if flyable[0] or not flyable.any():
-        return none
-    beyond = np.flatnonzero(distance > START_SLACK_M)
-    prefix = np.arange(len(visited)) < (beyond[0] if len(beyond) else len(visited))
-    outside = np.flatnonzero(prefix & ~flyable)
-    way = np.arange(len(visited)) <= outside[-1]
-    u = visited[outside[-1]] - visited[0]
-    u = u / max(float(np.linalg.norm(u)), 1e-12)
-    off = visited[way] - visited[0]
-    aside = np.linalg.norm(off - np.outer(off @ u, u), axis=1) * map.frame.resolution_m
-    if aside.max() > _STRAIGHT_M or (np.diff(off @ u) < -_TOUCH).any():
-        return none
-    free = np.array(map.cells == Cell.FREE)
-    for region in map.regions:
-        if region.passable is not Knowledge.YES:
-            free.ravel()[region.cells] = False
-    leaving: Bools = way & _is(free, visited)
-    return leaving
+def _is_straight(points: Floats) -> bool:
+    """Whether a path leads straight on, but for a centimetre."""
+    off = points - points[0]
+    u = off[-1] / max(float(np.linalg.norm(off[-1])), 1e-12)
+    aside = np.linalg.norm(off - np.outer(off @ u, u), axis=1)
+    return bool(aside.max() <= _STRAIGHT_M and (np.diff(off @ u) >= -TOLERANCE_M).all())
 
 
-def _sentence(spot: Floats, map: SemanticMap, limits: VehicleLimits) -> str:
-    """What is wrong at a spot (3,) that is not flyable."""
-    x, y, z = np.asarray(map.frame.origin_m) + spot * map.frame.resolution_m
-    at = f"at ({x:.2f}, {y:.2f}, {z:.2f}) m the way"
-    cell: Ints = np.floor(spot[::-1]).astype(np.int64)
+def _at(point: Floats) -> str:
+    x, y, z = point
+    return f"at ({x:.2f}, {y:.2f}, {z:.2f}) m the way"
+
+
+def _sentence(a: Floats, b: Floats, map: SemanticMap, near: Surroundings) -> str:
+    """What is wrong on the piece from a to b (3,)."""
+    cell, share, gap = near.nearest(a, b)
+    at = _at(a + share * (b - a))
+    keep_m = near.keep * near.frame.resolution_m
     if not map.frame.contains(cell)[0]:
-        return f"{at} leaves the map"
+        return f"{at} comes nearer than {keep_m:.2f} m to the map's border"
     index = int(np.ravel_multi_index(tuple(cell), map.frame.shape))
-    keep = limits.radius_m + limits.margin_m
-    closed = [r for r in map.regions if r.passable is not Knowledge.YES]
-    for region in closed:
-        if index in region.cells:
-            return f"{at} enters region '{region.id}', which is not known to be passable"
-    state = Cell(int(map.cells[tuple(cell)]))
-    if state is not Cell.FREE:
-        seen = "was never seen" if state is Cell.UNKNOWN else "is occupied"
-        return f"{at} enters cell {tuple(int(i) for i in cell)}, which {seen}"
-    for region in closed:
-        if index in region_reach(map, region, limits):
-            return f"{at} comes nearer than {keep:.2f} m to region '{region.id}', which is not known to be passable"
-    return f"{at} comes nearer than {keep:.2f} m to something occupied or never seen"
+    for region in map.regions:
+        if region.passable is not Knowledge.YES and index in region.cells:
+            manner = "enters" if gap == 0 else f"comes nearer than {keep_m:.2f} m to"
+            return f"{at} {manner} region '{region.id}', which is not known to be passable"
+    seen = "was never seen" if map.cells[tuple(cell)] == Cell.UNKNOWN else "is occupied"
+    manner = "enters" if gap == 0 else f"comes nearer than {keep_m:.2f} m to"
+    return f"{at} {manner} cell {tuple(int(i) for i in cell)}, which {seen}"

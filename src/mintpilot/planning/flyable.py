@@ -1,13 +1,16 @@
 """Where the vehicle's centre may be: clearance from matter, from the unknown, and from regions.
 
 **How exact it is.** A cell counts as flyable by the distance from *its centre* to the nearest point of the *surface* of
-each blocked cell; that distance is computed exactly (in squared half cells, whole numbers). Two things follow:
+each blocked cell; that distance is computed exactly (in squared half cells, whole numbers). From this follows, for
+cells of any size:
 
+* A move of the grid search keeps the same clearance everywhere between its two centres. All cells of the block that a
+  move sweeps are flyable (`mintpilot.planning.moves`). Inside the block the distance to a blocked cell along each axis
+  rises or falls only, so the distance is least in one of the block's corners, and these are centres of flyable cells.
 * Blocked cells are taken as solid cubes. Matter that fills only part of its cell is therefore kept further away than
-  asked for, by less than one cell's diagonal (``sqrt(3)`` edges in 3D, ``sqrt(2)`` in 2D): conservative.
-* Between two neighbouring centres on a straight move the clearance may fall below the one at the centres by at most
-  half the move's length (half an edge for a straight move, 0.87 edges for a space diagonal); moves never cut corners,
-  and ``margin_m`` is there to cover it.
+  asked for, by less than one cell's diagonal (``sqrt(3)`` edges in 3D, ``sqrt(2)`` in 2D).
+
+Other places than centres of cells have other clearances: `mintpilot.planning.clearance` computes them.
 
 What lies outside the grid is not known to be free, so it blocks: sideways, and in 3D above and below too (a hall's grid
 begins at the floor, which need not be in any cell). In 2D maps (``nz == 1``) the body is a disc.
@@ -32,8 +35,8 @@ def flyable_cells(map: SemanticMap, limits: VehicleLimits) -> Bools:
 
     Args:
         map: the semantic map.
-        limits: the body is a ball (2D: a disc) of ``radius_m + margin_m``. Up to half a cell's edge nothing is
-            inflated, so a point robot is one with a tiny radius.
+        limits: the body is a ball (2D: a disc) of radius `VehicleLimits.clearance_m`. Up to half a cell's edge nothing
+            is inflated, because no free cell's centre is nearer to a blocked one.
 
     Returns:
         Flags of shape (nz, ny, nx).
@@ -82,7 +85,7 @@ def known_flyable(map: SemanticMap, limits: VehicleLimits) -> Bools:
 
 
 def _radius_cells(frame: GridFrame, limits: VehicleLimits) -> float:
-    return (limits.radius_m + limits.margin_m) / frame.resolution_m
+    return limits.clearance_m / frame.resolution_m
 
 
 def _window(radius_cells: float) -> int:
@@ -99,12 +102,22 @@ def _within(solid: Bools, radius_cells: float) -> Bools:
     reach = (2 * radius_cells) ** 2 * (1 - 1e-9)
     if reach <= 1:
         return np.zeros(solid.shape, bool)
+    within: Bools = squared_gaps(solid, _window(radius_cells)) < min(reach, float(_FAR))
+    return within
+
+
+def squared_gaps(solid: Bools, window: int) -> NDArray[np.uint32]:
+    """Squared distance in half edges from each cell's centre to the nearest solid cell, exact up to a window.
+
+    Args:
+        solid: flags (nz, ny, nx).
+        window: offset in cells along each axis up to which solid cells are looked for; others count as far away.
+    """
     best: NDArray[np.uint32] = np.where(solid, np.uint32(0), _FAR)
     for axis in range(3):
         if solid.shape[axis] > 1:
-            best = _pass(best, axis, _window(radius_cells))
-    within: Bools = best < min(reach, float(_FAR))
-    return within
+            best = _pass(best, axis, window)
+    return best
 
 
 def _pass(best: NDArray[np.uint32], axis: int, window: int) -> NDArray[np.uint32]:

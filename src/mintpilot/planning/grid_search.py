@@ -16,7 +16,7 @@ from mintpilot.planning.lattice import Lattice, Words, lattice_of
 from mintpilot.planning.workspace import Workspace
 
 STRIDE = 4.0
-"""How much further a heuristic is grown at a time, edges."""
+"""Distance that a heuristic is grown further at a time, edges."""
 
 
 class GridSearch:

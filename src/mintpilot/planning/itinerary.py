@@ -13,6 +13,7 @@ from mintpilot.core.geometry import Floats, Ints
 from mintpilot.core.plan import Leg, Plan, PlanningProblem, Site, Stop
 from mintpilot.planning.approach import approach_cell
 from mintpilot.planning.legs import Cell3
+from mintpilot.planning.narrow import narrow_passages
 from mintpilot.planning.route import Route, Tour
 from mintpilot.planning.terrain import Terrain
 
@@ -65,7 +66,7 @@ class Itinerary:
         stops = (*self.ordered, *visits)
         cruise = self.problem.limits.cruise_mps
         legs: list[Leg] = []
-        for number, way in zip(route.order, route.ways, strict=True):
+        for number, way in zip(route.order, route.paths, strict=True):
             stop = stops[number]
             site = self.site(stop, values)
             assert site is not None, "a tour has a site for every stop"
@@ -105,10 +106,11 @@ def itinerary_of(problem: PlanningProblem, terrain: Terrain) -> Itinerary:
             )
         if all(places[stop.id, site.value] is None for site in stop.sites):
             site = stop.sites[0]
-            raise InfeasibleError(
-                f"stop '{stop.id}' at {site.position_m} can be reached under no hypothesis: no flyable cell within "
-                f"{site.reach_m} m of it is connected to the start; map its surroundings, or allow a wider reach"
+            why = narrow_passages(problem, terrain, site) or (
+                f"no flyable cell within {site.reach_m} m of it is connected to the start; map its surroundings, or "
+                "allow a wider reach"
             )
+            raise InfeasibleError(f"stop '{stop.id}' at {site.position_m} can be reached under no hypothesis: {why}")
     return Itinerary(
         problem=problem,
         terrain=terrain,

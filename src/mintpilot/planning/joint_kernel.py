@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from mintpilot.core.compiled import compiled
 from mintpilot.core.geometry import Floats, Ints
 from mintpilot.planning.buckets import MOVE, PER_EDGE, RING, SLACK, lowest_bit, redundant
-from mintpilot.planning.joint_labels import DEAD, ON_SHORE, admit, append, numbered
+from mintpilot.planning.joint_labels import AT_ENTRY, DEAD, admit, append, numbered
 from mintpilot.planning.joint_paths import take_aim
 from mintpilot.planning.lattice import NEAR, Words
 from mintpilot.planning.moves import NO_MOVE
@@ -19,19 +19,19 @@ SPENT = -2
 
 @compiled(error_model="numpy")
 def landings(
-    shore: Ints, cells: NDArray[np.void], tag: int, safe: NDArray[np.void], safe_tag: int, bound: float
+    entry_nodes: Ints, cells: NDArray[np.void], tag: int, safe: NDArray[np.void], safe_tag: int, bound: float
 ) -> tuple[Ints, Floats]:
     """Nodes from which a way that has entered no region may enter its first one; costs by way of them; both sorted."""
-    due = np.empty(shore.size)
-    for i in range(shore.size):
-        node = shore[i]
+    due = np.empty(entry_nodes.size)
+    for i in range(entry_nodes.size):
+        node = entry_nodes[i]
         reached = safe[node].tag == safe_tag and cells[node].tag == tag
         due[i] = safe[node].g + cells[node].g if reached else np.inf
     order = np.argsort(due, kind="mergesort")
     count = 0
     while count < order.size and due[order[count]] + SLACK < bound and due[order[count]] < np.inf:
         count += 1
-    return shore[order[:count]], due[order[:count]]
+    return entry_nodes[order[:count]], due[order[:count]]
 
 
 @compiled(error_model="numpy")
@@ -45,7 +45,7 @@ def search_labels(
     around: Ints,
     swept: Ints,
     region: NDArray[np.uint64],
-    shore: Ints,
+    entry_nodes: Ints,
     start: int,
     bound: float,
     budget: int,
@@ -58,15 +58,15 @@ def search_labels(
     sets: NDArray[np.void],
     found: NDArray[np.void],
 ) -> tuple[int, int, int]:
-    """All ways from start to goal that are best under some set of blocked regions.
+    """All paths from start to goal that are best under some set of blocked regions.
 
     ``cells`` holds, under ``tag``, the exact distances to the goal on the optimistic map of every node that may matter.
     ``bound`` is the cost of the way that enters no region, or infinity; that way itself is not found again. ``safe``
-    holds, under ``safe_tag``, what the search for it left: ways that have entered no region yet are taken from there,
+    holds, under ``safe_tag``, what the search for it left: paths that have entered no region yet are taken from there,
     and labels begin where such a way enters its first one.
 
     Returns:
-        (number of ways in ``found``, some of which others beat, or `SMALL` when a buffer is too small, or `SPENT` when
+        (number of paths in ``found``, some of which others beat, or `SMALL` when a buffer is too small, or `SPENT` when
         the budget of comparisons is spent; labels made; labels expanded).
     """
     if cells[start].tag != tag:
@@ -79,16 +79,16 @@ def search_labels(
     take_aim(start, aims, cells, tag, allowed, offset, swept, region)
     count, known, used, queued, bucket, expanded, work = 0, 1, 0, 0, 0, 0, 0
     if region[start]:
-        waiting, due = shore[:0], np.zeros(0)
+        waiting, due = entry_nodes[:0], np.zeros(0)
         append(pool, cells, head, 0, 0, 0.0, 0, start, -1, NO_MOVE)
         used, queued = 1, 1
     else:
-        waiting, due = landings(shore, cells, tag, safe, safe_tag, bound)
+        waiting, due = landings(entry_nodes, cells, tag, safe, safe_tag, bound)
     landed = 0
     while queued > 0 or landed < waiting.size:
         if landed < waiting.size and due[landed] - f0 < (bucket + 1) / PER_EDGE:
             node, number = waiting[landed], 0
-            g, last, label = safe[node].g, safe[node].last & MOVE, ON_SHORE - node
+            g, last, label = safe[node].g, safe[node].last & MOVE, AT_ENTRY - node
             landed += 1
         else:
             label = head[bucket & (RING - 1)]

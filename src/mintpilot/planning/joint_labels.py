@@ -19,8 +19,8 @@ ENTERED = np.dtype([("mask", np.uint64), ("cap", np.float64)])
 FOUND = np.dtype([("cost", np.float64), ("label", np.int64)])
 """A way to the goal: its cost, and the label from which on it is the shortest way of the optimistic map."""
 
-ON_SHORE = -2
-"""`ON_SHORE` - v stands for the way to node v that enters no region, in the place of a label."""
+AT_ENTRY = -2
+"""`AT_ENTRY` - v stands for the way to node v that enters no region, in the place of a label."""
 
 DEAD = 64
 FIRST = 32  # a node whose `last` is below has no label: it is still the move of the field

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from mintpilot.core.compiled import compiled
 from mintpilot.core.geometry import Floats, Ints
 from mintpilot.planning.buckets import MOVE
-from mintpilot.planning.joint_labels import DEAD, ON_SHORE
+from mintpilot.planning.joint_labels import AT_ENTRY, DEAD
 from mintpilot.planning.lattice import NEAR, Words
 from mintpilot.planning.moves import NO_MOVE
 
@@ -72,10 +72,10 @@ def traced(
     offset: Ints,
     step: Ints,
 ) -> tuple[Ints, Ints, Ints]:
-    """The ways of labels (n,), of those costs (n,): before them as they came, after them as they aim.
+    """The paths of labels (n,), of those costs (n,): before them as they came, after them as they aim.
 
     Returns:
-        (cells (m, 3) of all ways one after the other; where each ends there (n,); numbers of moves (n, 4) along 0, 1,
+        (cells (m, 3) of all paths one after the other; where each ends there (n,); numbers of moves (n, 4) along 0, 1,
         2 and 3 axes).
     """
     room = 1
@@ -119,7 +119,7 @@ def moves_of(
             moves[count] = last
             count += 1
         i = pool[i].parent
-    node = ON_SHORE - i if i <= ON_SHORE else -1
+    node = AT_ENTRY - i if i <= AT_ENTRY else -1
     while node >= 0:
         last = safe[node].last & MOVE
         if last == NO_MOVE:

@@ -3,7 +3,7 @@
 1. Distances to the goal on the optimistic map, grown towards the start no further than they are needed, are a perfect
    heuristic for every hypothesis.
 2. A plan that enters no region gives an upper bound (none where there is no such plan). A region whose cells all lie on
-   ways as long as the bound is never touched: it is irrelevant.
+   paths as long as the bound is never touched: it is irrelevant.
 3. One search over labels (cost, set of regions entered), where a label is beaten by one at the same place with no more
    cost and no other region, gives the decision list. A label whose shortest way on enters nothing new is done: it is
    a way, and its place needs no other continuation.
@@ -22,16 +22,16 @@ from numpy.typing import ArrayLike, NDArray
 
 from mintpilot.core.geometry import Bools, Floats, Ints
 from mintpilot.planning import joint_kernel, joint_labels, joint_paths
-from mintpilot.planning.decision_list import DecisionList, Way, sorted_ways
+from mintpilot.planning.decision_list import DecisionList, ParetoPath, sorted_paths
 from mintpilot.planning.distance_field import DistanceField
 from mintpilot.planning.grid_search import GridSearch
 from mintpilot.planning.lattice import cost_of_moves
-from mintpilot.planning.lazy import lazy_ways
+from mintpilot.planning.lazy import lazy_paths
 from mintpilot.planning.overlay import Overlay, closed_moves, followed, overlay_of
 from mintpilot.planning.workspace import Workspace
 
 MAX_REGIONS = 63
-"""Regions that one search can tell apart; the least relevant ones beyond it are taken as blocked."""
+"""Number of regions that one search can tell apart; the least relevant ones beyond it are taken as blocked."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -72,7 +72,7 @@ class JointSearch:
         self._worn: Overlay | None = None
 
     def between(self, start: ArrayLike, goal: ArrayLike) -> DecisionList[Ints]:
-        """All ways from start to goal (cells (z, y, x)) that are best under some set of blocked regions.
+        """All paths from start to goal (cells (z, y, x)) that are best under some set of blocked regions.
 
         Costs are in edges, paths are cells (n, 3). Regions over start or goal are required by every way.
         """
@@ -80,12 +80,12 @@ class JointSearch:
         ends = lattice.node(start), lattice.node(goal)
         self.searches += 1
         if not (lattice.free[ends[0]] and lattice.free[ends[1]]):
-            return DecisionList(ways=())
+            return DecisionList(paths=())
         chosen = self._chosen(*ends)
         overlay = self._overlay(chosen)
         ahead = DistanceField(lattice, self.grid.work, ends[1], ends[0], overlay.near)
         ahead.grow(hold=True)
-        ways: tuple[Way[Ints], ...] = ()
+        paths: tuple[ParetoPath[Ints], ...] = ()
         not_expanded = 0
         if np.isfinite(ahead.at(ends[0])):
             bound, safe_path = self.grid.node_path(*ends, overlay.without, ahead, self._safe)
@@ -94,11 +94,11 @@ class JointSearch:
             found = self._labels(ends[0], bound, overlay)
             if found is None:
                 branched = self._branch(*ends, overlay, chosen, ahead)
-                ways, not_expanded = sorted_ways([*safe, *branched.ways]), branched.not_expanded
+                paths, not_expanded = sorted_paths([*safe, *branched.paths]), branched.not_expanded
             else:
-                ways = self._traced(found, safe, ends[0])
+                paths = self._traced(found, safe, ends[0])
         return DecisionList(
-            ways=tuple(self._named(w, chosen) for w in ways),
+            paths=tuple(self._named(w, chosen) for w in paths),
             complete=not_expanded == 0 and len(chosen) == len(self.regions),
             left_out=tuple(r for r in range(len(self.regions)) if r not in set(chosen)),
             not_expanded=not_expanded,
@@ -124,7 +124,7 @@ class JointSearch:
         return lattice.path_cost(cells), cells
 
     def _chosen(self, start: int, goal: int) -> tuple[int, ...]:
-        """The regions to tell apart: all, or those that lie on the shortest ways."""
+        """The regions to tell apart: all, or those that lie on the shortest paths."""
         count = len(self.regions)
         if count <= MAX_REGIONS:
             return tuple(range(count))
@@ -152,8 +152,8 @@ class JointSearch:
             self._overlays[chosen] = overlay_of(self.grid.lattice, nodes, self._opened(chosen), self._worn)
         return self._overlays[chosen]
 
-    def _labels(self, start: int, bound: float, overlay: Overlay) -> list[Way[int]] | None:
-        """Ways as labels; None when the budget is spent. Needs the field of distances to the goal in the workspace."""
+    def _labels(self, start: int, bound: float, overlay: Overlay) -> list[ParetoPath[int]] | None:
+        """Paths as labels; None when the budget is spent. Needs the field of distances to the goal in the workspace."""
         lattice, work, moves = self.grid.lattice, self.grid.work, self.grid.lattice.moves
         count = joint_kernel.SMALL
         while count < 0:
@@ -167,7 +167,7 @@ class JointSearch:
                 lattice.around,
                 lattice.swept,
                 overlay.region,
-                overlay.shore,
+                overlay.entry_nodes,
                 start,
                 bound,
                 self.effort.comparisons,
@@ -187,14 +187,16 @@ class JointSearch:
         found = self._found[:count]
         masks = self._sets["mask"][self._pool["set"][found["label"]]]
         of_all = zip(found["cost"].tolist(), masks.tolist(), found["label"].tolist(), strict=True)
-        return [Way(cost=cost, mask=mask, path=label) for cost, mask, label in of_all]
+        return [ParetoPath(cost=cost, mask=mask, path=label) for cost, mask, label in of_all]
 
-    def _traced(self, found: list[Way[int]], safe: list[Way[Ints]], start: int) -> tuple[Way[Ints], ...]:
-        """Of the ways found those that no other one beats, as paths."""
+    def _traced(
+        self, found: list[ParetoPath[int]], safe: list[ParetoPath[Ints]], start: int
+    ) -> tuple[ParetoPath[Ints], ...]:
+        """Of the paths found those that no other one beats, as paths."""
         lattice = self.grid.lattice
-        rivals = [Way(cost=way.cost, mask=way.mask, path=-1) for way in safe]
-        ways = sorted_ways([*rivals, *found])
-        ours = [way for way in ways if way.path >= 0]
+        rivals = [ParetoPath(cost=way.cost, mask=way.mask, path=-1) for way in safe]
+        paths = sorted_paths([*rivals, *found])
+        ours = [way for way in paths if way.path >= 0]
         cells, ends, kinds = joint_paths.traced(
             np.array([way.path for way in ours], np.int64),
             np.array([way.cost for way in ours], np.float64),
@@ -205,15 +207,15 @@ class JointSearch:
             lattice.offset,
             lattice.moves.step.astype(np.int64),
         )
-        paths = iter(zip(np.split(cells, ends), kinds.tolist(), strict=False))
+        traces = iter(zip(np.split(cells, ends), kinds.tolist(), strict=False))
         made = []
-        for way in ways:
-            path, moves = next(paths) if way.path >= 0 else (safe[0].path, None)
-            made.append(Way(cost=cost_of_moves(moves) if moves else way.cost, mask=way.mask, path=path))
+        for way in paths:
+            path, moves = next(traces) if way.path >= 0 else (safe[0].path, None)
+            made.append(ParetoPath(cost=cost_of_moves(moves) if moves else way.cost, mask=way.mask, path=path))
         return tuple(made)
 
     def _grow(self) -> bool:
-        """Makes room for more labels and ways; False when the budget is spent."""
+        """Makes room for more labels and paths; False when the budget is spent."""
         if self._pool.size >= self.effort.labels:
             return False
         self._pool = np.empty(min(4 * self._pool.size, self.effort.labels), joint_labels.LABEL)
@@ -226,21 +228,21 @@ class JointSearch:
     ) -> DecisionList[NDArray[np.int64]]:
         """Lazy branching, guided by the exact optimistic distances."""
         search = _Branching(search=self, ends=(start, goal), ahead=ahead, overlay=overlay, chosen=chosen)
-        return lazy_ways(search, max_searches=self.effort.searches)
+        return lazy_paths(search, max_searches=self.effort.searches)
 
-    def _way(self, nodes: NDArray[np.int64], overlay: Overlay) -> Way[NDArray[np.int64]]:
+    def _way(self, nodes: NDArray[np.int64], overlay: Overlay) -> ParetoPath[NDArray[np.int64]]:
         lattice = self.grid.lattice
         _, rows, columns = lattice.padded
         cells, kinds, mask = followed(nodes, rows, columns, lattice.offset, lattice.swept, overlay.region)
         cells -= (0 if lattice.shape[0] == 1 else 1, 1, 1)
-        return Way(cost=cost_of_moves(kinds), mask=int(mask), path=cells)
+        return ParetoPath(cost=cost_of_moves(kinds), mask=int(mask), path=cells)
 
-    def _named(self, way: Way[Ints], chosen: tuple[int, ...]) -> Way[Ints]:
+    def _named(self, way: ParetoPath[Ints], chosen: tuple[int, ...]) -> ParetoPath[Ints]:
         """The way with its mask in terms of all regions instead of the chosen ones."""
         if len(chosen) == len(self.regions):
             return way
         mask = sum(1 << r for bit, r in enumerate(chosen) if way.mask >> bit & 1)
-        return Way(cost=way.cost, mask=mask, path=way.path)
+        return ParetoPath(cost=way.cost, mask=mask, path=way.path)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import Protocol, TypeVar
 
-from mintpilot.planning.decision_list import DecisionList, Way, sorted_ways
+from mintpilot.planning.decision_list import DecisionList, ParetoPath, sorted_paths
 
 P = TypeVar("P")
 P_co = TypeVar("P_co", covariant=True)
@@ -25,7 +25,7 @@ class PathPlanner(Protocol[P_co]):
         ...
 
 
-def lazy_ways(planner: PathPlanner[P], *, max_searches: int = 4096) -> DecisionList[P]:
+def lazy_paths(planner: PathPlanner[P], *, max_searches: int = 4096) -> DecisionList[P]:
     """The decision list of a black box, by branching on the regions that its paths enter.
 
     Args:
@@ -33,7 +33,7 @@ def lazy_ways(planner: PathPlanner[P], *, max_searches: int = 4096) -> DecisionL
         max_searches: bound on those; beyond it the list is marked incomplete.
     """
     found: dict[frozenset[int], tuple[float, P, frozenset[int]] | None] = {}
-    ways: list[Way[P]] = []
+    paths: list[ParetoPath[P]] = []
     todo: list[tuple[frozenset[int], frozenset[int]]] = [(frozenset(), frozenset())]
     not_expanded = 0
     while todo:
@@ -44,7 +44,7 @@ def lazy_ways(planner: PathPlanner[P], *, max_searches: int = 4096) -> DecisionL
                 continue
             found[blocked] = planner.path(blocked)
             if (new := found[blocked]) is not None:
-                ways.append(Way(cost=new[0], mask=sum(1 << r for r in new[2]), path=new[1]))
+                paths.append(ParetoPath(cost=new[0], mask=sum(1 << r for r in new[2]), path=new[1]))
         plan = found[blocked]
         if plan is None:
             continue
@@ -52,4 +52,4 @@ def lazy_ways(planner: PathPlanner[P], *, max_searches: int = 4096) -> DecisionL
             region = min(open_regions)
             todo.append((blocked | {region}, passable))
             todo.append((blocked, passable | {region}))
-    return DecisionList(ways=sorted_ways(ways), complete=not_expanded == 0, not_expanded=not_expanded)
+    return DecisionList(paths=sorted_paths(paths), complete=not_expanded == 0, not_expanded=not_expanded)

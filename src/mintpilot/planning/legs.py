@@ -1,4 +1,4 @@
-"""Ways between places, made when asked for and remembered."""
+"""Paths between places, made when asked for and remembered."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from mintpilot.core.geometry import Ints
-from mintpilot.planning.decision_list import DecisionList, Way
+from mintpilot.planning.decision_list import DecisionList, ParetoPath
 
 Cell3 = tuple[int, int, int]
 
 
-class WaySearch(Protocol):
-    """Finds all ways between two cells that are best under some set of blocked regions."""
+class PathSearch(Protocol):
+    """Finds all paths between two cells that are best under some set of blocked regions."""
 
     searches: int
 
@@ -30,12 +30,12 @@ class LegTable:
     does not depend on which direction was asked for first.
     """
 
-    def __init__(self, search: WaySearch) -> None:
+    def __init__(self, search: PathSearch) -> None:
         self.search = search
         self._lists: dict[tuple[Cell3, Cell3], DecisionList[Ints]] = {}
 
     def between(self, start: Cell3, goal: Cell3) -> DecisionList[Ints]:
-        """All ways from one place to the other."""
+        """All paths from one place to the other."""
         key = (start, goal)
         if key not in self._lists:
             if goal < start:
@@ -51,5 +51,5 @@ class LegTable:
 
 
 def _reversed(forth: DecisionList[Ints]) -> DecisionList[Ints]:
-    back = tuple(Way(cost=w.cost, mask=w.mask, path=np.ascontiguousarray(w.path[::-1])) for w in forth.ways)
-    return DecisionList(ways=back, complete=forth.complete, left_out=forth.left_out, not_expanded=forth.not_expanded)
+    back = tuple(ParetoPath(cost=w.cost, mask=w.mask, path=np.ascontiguousarray(w.path[::-1])) for w in forth.paths)
+    return DecisionList(paths=back, complete=forth.complete, left_out=forth.left_out, not_expanded=forth.not_expanded)

@@ -23,7 +23,7 @@ class Overlay:
     """Allowed moves with all regions passable; `NEAR` is set where one of them is next to the node."""
     without: Words
     """Allowed moves that touch no region."""
-    shore: Ints
+    entry_nodes: Ints
     """Nodes (n,) outside all regions from which one move may touch a region."""
     closed: Words
     """The allowed moves that it was laid over."""
@@ -49,15 +49,15 @@ def overlay_of(lattice: Lattice, regions: Sequence[Ints], closed: Words, worn: O
         region, near, without = np.zeros(lattice.size, np.uint64), closed.copy(), closed.copy()
     for bit, nodes in enumerate(regions):
         region[nodes] |= np.uint64(1 << bit)
-    shore = touched = np.zeros(0, np.int64)
+    entry_nodes = touched = np.zeros(0, np.int64)
     if regions:
         covered = np.concatenate(list(regions))
         nodes = covered[lattice.free[covered] == 1]
         rest = _mark(lattice, nodes)
         marked = _close(without, near, lattice.free, rest, lattice.around, lattice.moves.needs, nodes)
-        shore = marked[region[marked] == 0]
+        entry_nodes = marked[region[marked] == 0]
         touched = np.concatenate([covered, marked])
-    return Overlay(region=region, near=near, without=without, shore=shore, closed=closed, touched=touched)
+    return Overlay(region=region, near=near, without=without, entry_nodes=entry_nodes, closed=closed, touched=touched)
 
 
 def closed_moves(lattice: Lattice, allowed: Words, regions: Iterable[Ints]) -> Words:

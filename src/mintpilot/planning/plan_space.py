@@ -11,7 +11,7 @@ from mintpilot.core.plan import Plan, PlanningProblem, Stop
 from mintpilot.core.ports import PlanSpace
 from mintpilot.core.tolerances import TOLERANCE
 from mintpilot.planning.itinerary import itinerary_of, needed_value
-from mintpilot.planning.legs import LegTable, WaySearch
+from mintpilot.planning.legs import LegTable, PathSearch
 from mintpilot.planning.route import Route, best_route
 from mintpilot.planning.terrain import Terrain
 
@@ -46,7 +46,7 @@ class GridPlanSpace(PlanSpace):
         MissionError: a stop has several sites and no gap to choose among them.
     """
 
-    def __init__(self, problem: PlanningProblem, terrain: Terrain, search: WaySearch) -> None:
+    def __init__(self, problem: PlanningProblem, terrain: Terrain, search: PathSearch) -> None:
         self.itinerary = itinerary_of(problem, terrain)
         self._search = search
         self._legs = LegTable(search)

@@ -16,7 +16,8 @@ from mintpilot.core.plan import VehicleLimits
 from mintpilot.core.semantic_map import SemanticMap
 from mintpilot.planning.flyable import known_flyable
 from mintpilot.planning.grid_search import distance_field, shortest_path
-from mintpilot.planning.sight import news_m3
+from mintpilot.planning.sight import view_gain_m3
+from mintpilot.planning.terrain import start_cell
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -64,7 +65,7 @@ def next_view(
         Way-points (n, 3), metres, beginning at the start; None where nothing is worth the way.
     """
     free = known_flyable(map, limits)
-    start = _nearest(free, map.frame, start_m)
+    start = _start(map, limits, free, start_m)
     if start is None:
         return None
     way_cells = distance_field(free, start)
@@ -78,7 +79,7 @@ def next_view(
     chosen = chosen[:: max(1, len(chosen) // settings.places)]
     if not len(chosen):
         return None
-    gain_m3 = news_m3(
+    gain_m3 = view_gain_m3(
         map,
         inspected,
         centres[chosen],
@@ -96,7 +97,7 @@ def next_view(
 def way_to(map: SemanticMap, limits: VehicleLimits, *, start_m: Vec3, goal_m: Vec3) -> Floats | None:
     """The shortest way through known flyable space; None where there is none. Ends are snapped within half a metre."""
     free = known_flyable(map, limits)
-    start, goal = _nearest(free, map.frame, start_m), _nearest(free, map.frame, goal_m)
+    start, goal = _start(map, limits, free, start_m), _nearest(free, map.frame, goal_m)
     if start is None or goal is None:
         return None
     return _way(free, map.frame, start, np.asarray(goal), start_m)
@@ -108,6 +109,15 @@ def _way(free: Bools, frame: GridFrame, start: tuple[int, int, int], goal: Ints,
     except InfeasibleError:
         return None
     return np.vstack([np.asarray([start_m], float), frame.centres_of(way)])
+
+
+def _start(map: SemanticMap, limits: VehicleLimits, free: Bools, start_m: Vec3) -> tuple[int, int, int] | None:
+    """The cell where paths from a place begin; None where there is none."""
+    try:
+        z, y, x = (int(i) for i in start_cell(map, limits, free, start_m))
+    except InfeasibleError:
+        return None
+    return (z, y, x)
 
 
 def _nearest(free: Bools, frame: GridFrame, point_m: Vec3) -> tuple[int, int, int] | None:

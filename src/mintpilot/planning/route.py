@@ -6,11 +6,11 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from mintpilot.core.geometry import Ints
-from mintpilot.planning.decision_list import Way
+from mintpilot.planning.decision_list import ParetoPath
 from mintpilot.planning.legs import Cell3, LegTable
 
 TIE = 1e-9
-"""Costs in edges that are closer than this are equal."""
+"""Difference of costs, edges, up to which they are equal."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -23,7 +23,7 @@ class Route:
     """Regions entered."""
     order: tuple[int, ...]
     """Numbers of the stops, in the order of the visits."""
-    ways: tuple[Way[Ints], ...]
+    paths: tuple[ParetoPath[Ints], ...]
     """The way to each of them."""
 
     def rank(self, uncertain: int) -> tuple[float, int, int, int, tuple[int, ...]]:
@@ -54,7 +54,7 @@ def best_route(legs: LegTable, tour: Tour, blocked: int, uncertain: int) -> Rout
     cheapest ones to each state; of those all are kept that differ in the uncertain regions entered.
     """
     rest = range(tour.ordered, len(tour.places))
-    layer: dict[tuple[int, int, int], list[Route]] = {(0, 0, -1): [Route(cost=0.0, mask=0, order=(), ways=())]}
+    layer: dict[tuple[int, int, int], list[Route]] = {(0, 0, -1): [Route(cost=0.0, mask=0, order=(), paths=())]}
     for _ in tour.places:
         coming: dict[tuple[int, int, int], list[Route]] = {}
         for (done, others, last), routes in layer.items():
@@ -62,27 +62,27 @@ def best_route(legs: LegTable, tour: Tour, blocked: int, uncertain: int) -> Rout
             moves = [(done + 1, others, done)] if done < tour.ordered else []
             moves += [(done, others | 1 << s, s) for s in rest if not others >> s & 1]
             for state in moves:
-                ways = cheapest(legs.between(here, tour.places[state[2]]).ways, blocked)
+                paths = cheapest(legs.between(here, tour.places[state[2]]).paths, blocked)
                 for route in routes:
-                    for way in ways:
+                    for way in paths:
                         _offer(coming.setdefault(state, []), _longer(route, way, state[2]), uncertain)
         layer = {state: routes for state, routes in coming.items() if routes}
     ends = [route for routes in layer.values() for route in routes]
     return min(ends, key=lambda r: r.rank(uncertain), default=None)
 
 
-def cheapest(ways: Sequence[Way[Ints]], blocked: int) -> list[Way[Ints]]:
-    """The ways of least cost that enter no blocked region: several where they enter different ones at equal cost."""
-    usable = [w for w in ways if not w.mask & blocked]
+def cheapest(paths: Sequence[ParetoPath[Ints]], blocked: int) -> list[ParetoPath[Ints]]:
+    """The paths of least cost that enter no blocked region: several where they enter different ones at equal cost."""
+    usable = [w for w in paths if not w.mask & blocked]
     return [w for w in usable if w.cost <= usable[0].cost + TIE]
 
 
-def _longer(route: Route, way: Way[Ints], stop: int) -> Route:
+def _longer(route: Route, way: ParetoPath[Ints], stop: int) -> Route:
     return Route(
         cost=route.cost + way.cost,
         mask=route.mask | way.mask,
         order=(*route.order, stop),
-        ways=(*route.ways, way),
+        paths=(*route.paths, way),
     )
 
 

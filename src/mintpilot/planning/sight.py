@@ -1,4 +1,4 @@
-"""How much that is new could be seen from a place: unknown space, and surfaces that were never looked at closely."""
+"""Information gain of a place to look from: unknown space, and surfaces that were never looked at closely."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from mintpilot.core.geometry import Bools, Floats
 from mintpilot.core.semantic_map import Cell, SemanticMap
 
 RAYS = 400
-"""Directions that are looked in."""
+"""Number of directions that are looked in."""
 SURFACE_M = 0.2
-"""A square metre of surface that was never looked at closely counts as much as this many cubic metres unknown."""
+"""Value of a square metre of surface that was never looked at closely, in cubic metres of unknown space."""
 FLOOR_M = 0.45
-"""Surfaces below this height are floor."""
+"""Height below which surfaces are floor, metres."""
 
 
-def news_m3(
+def view_gain_m3(
     map: SemanticMap,
     inspected: Bools,
     places_m: Floats,
@@ -27,7 +27,7 @@ def news_m3(
     close_m: float,
     elevation_rad: tuple[float, float],
 ) -> Floats:
-    """What a turn around on the spot would show that is new, as cubic metres, for each place (n, 3).
+    """Information gain of a turn around on the spot, as cubic metres of space not seen before, for each place (n, 3).
 
     Unknown space counts by its volume, surfaces not inspected yet by their area times `SURFACE_M`. Sight ends at
     occupied cells, at regions that are not known to be passable (smoke), and at ``reach_m``. Unknown cells are looked

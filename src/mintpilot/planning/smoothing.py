@@ -1,46 +1,60 @@
-"""Line of sight through cells, the shortcut of a path along it, and a heading that turns no faster than allowed."""
+"""Straight ways that keep their clearance, the shortcut of a path along them, and the heading of a motion."""
 
 from __future__ import annotations
 
 from itertools import pairwise
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mintpilot.core.compiled import compiled
-from mintpilot.core.geometry import Bools, Floats, GridFrame, Ints
+from mintpilot.core.geometry import Bools, Floats, Ints
+from mintpilot.core.plan import VehicleLimits
+from mintpilot.core.semantic_map import SemanticMap
+from mintpilot.planning.clearance import TOLERANCE_M, first_near, surroundings
+from mintpilot.planning.flyable import squared_gaps
 
-BORDER_CELLS = 1e-6
-"""A point this near to the border of two cells (in cells) belongs to either; shorter passages do not count."""
+SPACING_M = 0.25
+"""Greatest distance between places at which a shortcut may begin or end, metres; in fine cells half an edge."""
 
 
 class Sight:
-    """Straight lines through the allowed cells of a lattice, exactly: every cell that a line passes through counts."""
+    """Straight lines along which the body keeps its clearance from all that is not known passable, exactly.
 
-    def __init__(self, allowed: Bools, frame: GridFrame) -> None:
-        self._allowed = np.ascontiguousarray(allowed)
-        self._origin = np.asarray(frame.origin_m, float)
-        self._resolution = frame.resolution_m
+    Args:
+        map: what is known.
+        limits: the vehicle.
+        around_m: points (n, 3), metres; all lines that are asked for lie in their bounding box.
+    """
+
+    def __init__(self, map: SemanticMap, limits: VehicleLimits, around_m: Floats) -> None:
+        self._near = surroundings(map, around_m, limits.clearance_m - TOLERANCE_M / 2)
+        self._window = int(np.ceil(self._near.keep + 0.5))
+        self._gaps = squared_gaps(self._near.barred, self._window)
 
     def clear(self, a_m: Floats, b_m: Floats) -> bool:
-        """Whether the line from a to b (3,) passes through allowed cells only; a line without length is its point."""
-        return bool(_line_clear(self._allowed, self._cells(a_m), self._cells(b_m)))
+        """Whether the line from a to b (3,) keeps the clearance; a line without length is its point."""
+        return not self.blocked_pieces(np.stack([a_m, b_m]))[0]
 
     def blocked_pieces(self, points_m: Floats) -> Bools:
-        """For the polyline (n, 3): which of its n - 1 pieces leave the allowed cells."""
-        blocked: Bools = _blocked_pieces(self._allowed, self._cells(points_m))
+        """For the polyline (n, 3): which of its n - 1 pieces come too near to something."""
+        near = self._near
+        blocked: Bools = _blocked_pieces(near.barred, self._gaps, near.spots(points_m), near.keep, self._window)
         return blocked
 
     def shortcut(self, path_m: Floats) -> Floats:
         """The path (n, 3) with every detour cut that a clear line makes needless; ends and clearness are kept.
 
-        Twice: the second pass starts from points half a cell apart, so that corners need not be way-points of the path.
+        Twice: the second pass starts from points closer together, so that corners need not be way-points of the path.
         """
-        once = path_m[_farthest_visible(self._allowed, self._cells(path_m))]
-        dense = _densified(once, self._resolution / 2)
-        return np.asarray(dense[_farthest_visible(self._allowed, self._cells(dense))])
+        once = path_m[self._farthest_visible(path_m)]
+        dense = _densified(once, min(self._near.frame.resolution_m / 2, SPACING_M))
+        return np.asarray(dense[self._farthest_visible(dense)])
 
-    def _cells(self, points_m: Floats) -> Floats:
-        return np.asarray((points_m - self._origin) / self._resolution, float)
+    def _farthest_visible(self, points_m: Floats) -> Ints:
+        near = self._near
+        found: Ints = _farthest_visible(near.barred, self._gaps, near.spots(points_m), near.keep, self._window)
+        return found
 
 
 def heading(
@@ -71,61 +85,48 @@ def _densified(points_m: Floats, spacing_m: float) -> Floats:
     return np.concatenate(parts)
 
 
-@compiled()
-def _point_clear(allowed: Bools, x: float, y: float, z: float) -> bool:
-    nz, ny, nx = allowed.shape
-    for k in range(int(np.floor(z - BORDER_CELLS)), int(np.floor(z + BORDER_CELLS)) + 1):
-        for j in range(int(np.floor(y - BORDER_CELLS)), int(np.floor(y + BORDER_CELLS)) + 1):
-            for i in range(int(np.floor(x - BORDER_CELLS)), int(np.floor(x + BORDER_CELLS)) + 1):
-                if 0 <= k < nz and 0 <= j < ny and 0 <= i < nx and allowed[k, j, i]:
-                    return True
-    return False
-
-
-@compiled()
-def _line_clear(allowed: Bools, a: Floats, b: Floats) -> bool:
-    """Steps from border to border (Amanatides and Woo) and looks at the middle of each passage."""
+@compiled(error_model="numpy")
+def _line_clear(barred: Bools, gaps: NDArray[np.uint32], a: Floats, b: Floats, keep: float, window: int) -> bool:
+    """Looks at parts of at most one cell's edge. Most need no exact test: a cell's centre is known to be far enough
+    from, or too near to, what is barred.
+    """
     d = b - a
     length = np.sqrt((d * d).sum())
-    if length <= BORDER_CELLS:
-        return _point_clear(allowed, a[0], a[1], a[2])
-    crossing = np.full(3, np.inf)
-    spacing = np.full(3, np.inf)
-    for axis in range(3):
-        if abs(d[axis]) > 1e-12:
-            border = np.floor(a[axis]) + 1 if d[axis] > 0 else np.ceil(a[axis]) - 1
-            crossing[axis] = (border - a[axis]) / d[axis]
-            spacing[axis] = 1 / abs(d[axis])
-    t = 0.0
-    while t < 1.0:
-        following = min(1.0, crossing.min())
-        if (following - t) * length > BORDER_CELLS:
-            m = a + d * (0.5 * (t + following))
-            if not _point_clear(allowed, m[0], m[1], m[2]):
-                return False
-        for axis in range(3):
-            if crossing[axis] <= following:
-                crossing[axis] += spacing[axis]
-        t = following
+    parts = max(1, int(np.ceil(length)))
+    d = d / parts
+    for part in range(parts):
+        begin = a + d * part
+        x, y, z = begin[0] + 0.5 * d[0], begin[1] + 0.5 * d[1], begin[2] + 0.5 * d[2]
+        i, j, k = int(np.floor(x)), int(np.floor(y)), int(np.floor(z))
+        if not (0 <= k < gaps.shape[0] and 0 <= j < gaps.shape[1] and 0 <= i < gaps.shape[2]):
+            return False
+        off = np.sqrt((x - i - 0.5) ** 2 + (y - j - 0.5) ** 2 + (z - k - 0.5) ** 2)
+        gap = 0.5 * np.sqrt(float(gaps[k, j, i]))
+        if gap + off < keep:
+            return False
+        if min(gap, window + 0.5) - off - 0.5 * length / parts >= keep:
+            continue
+        if first_near(barred, begin, d, keep)[2] >= 0:
+            return False
     return True
 
 
-@compiled()
-def _blocked_pieces(allowed: Bools, points: Floats) -> Bools:
+@compiled(error_model="numpy")
+def _blocked_pieces(barred: Bools, gaps: NDArray[np.uint32], points: Floats, keep: float, window: int) -> Bools:
     blocked = np.zeros(max(len(points) - 1, 0), np.bool_)
     for i in range(len(blocked)):
-        blocked[i] = not _line_clear(allowed, points[i], points[i + 1])
+        blocked[i] = not _line_clear(barred, gaps, points[i], points[i + 1], keep, window)
     return blocked
 
 
-@compiled()
-def _farthest_visible(allowed: Bools, points: Floats) -> Ints:
+@compiled(error_model="numpy")
+def _farthest_visible(barred: Bools, gaps: NDArray[np.uint32], points: Floats, keep: float, window: int) -> Ints:
     """Indices of the points kept when each is followed by the farthest one that it sees."""
     kept = [0]
     here = 0
     while here < len(points) - 1:
         there = len(points) - 1
-        while there > here + 1 and not _line_clear(allowed, points[here], points[there]):
+        while there > here + 1 and not _line_clear(barred, gaps, points[here], points[there], keep, window):
             there -= 1
         kept.append(there)
         here = there

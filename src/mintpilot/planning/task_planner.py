@@ -13,7 +13,7 @@ from mintpilot.core.plan import PlanningProblem
 from mintpilot.core.ports import Planner
 from mintpilot.planning.decision_list import DecisionList
 from mintpilot.planning.joint_search import Effort, JointSearch
-from mintpilot.planning.lazy import lazy_ways
+from mintpilot.planning.lazy import lazy_paths
 from mintpilot.planning.plan_space import GridPlanSpace
 from mintpilot.planning.terrain import terrain_of
 
@@ -71,10 +71,10 @@ class _BlackBox:
         self._ends: tuple[tuple[int, int, int], tuple[int, int, int]] = ((0, 0, 0), (0, 0, 0))
 
     def between(self, start: ArrayLike, goal: ArrayLike) -> DecisionList[Ints]:
-        """All ways between two cells, one search for each set of blocked regions that matters."""
+        """All paths between two cells, one search for each set of blocked regions that matters."""
         a, b = (tuple(int(i) for i in np.ravel(cell)) for cell in (start, goal))
         self._ends = ((a[0], a[1], a[2]), (b[0], b[1], b[2]))
-        return lazy_ways(self, max_searches=self._max_searches)
+        return lazy_paths(self, max_searches=self._max_searches)
 
     def path(self, blocked: frozenset[int]) -> tuple[float, Ints, frozenset[int]] | None:
         """One search with those regions blocked."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,12 +11,15 @@ from scipy import ndimage
 from mintpilot.core.errors import InfeasibleError, MissionError
 from mintpilot.core.gap import GapKind, KnowledgeGap
 from mintpilot.core.geometry import Bools, Floats, GridFrame, Ints, Vec3
-from mintpilot.core.plan import PlanningProblem
-from mintpilot.core.semantic_map import Cell, Knowledge
-from mintpilot.planning.flyable import flyable_cells, region_reach
+from mintpilot.core.plan import PlanningProblem, VehicleLimits
+from mintpilot.core.semantic_map import Cell, Knowledge, SemanticMap
+from mintpilot.planning.checks import first_breach
+from mintpilot.planning.clearance import surroundings
+from mintpilot.planning.flyable import flyable_cells, known_flyable, region_reach
 
 SNAP_M = 0.5
-"""A start that is not flyable is moved to the nearest flyable cell, at most this far, straight through free cells."""
+"""Distance, metres, at most, from a start that is not flyable to the flyable cell where paths begin; a cell's diagonal
+where that is more."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -66,8 +70,7 @@ def terrain_of(problem: PlanningProblem) -> Terrain:
     open_cells = np.zeros(free.shape, bool)
     for cells in regions:
         open_cells.ravel()[cells] = True
-    matter = np.asarray(world.cells != Cell.FREE)
-    start = start_cell(world.frame, free, matter, problem.start_m)
+    start = _start_of(problem, free, open_cells, settled)
     # Moves that cut no corner join exactly what steps through faces join.
     parts, _ = ndimage.label(free)
     return Terrain(
@@ -76,37 +79,68 @@ def terrain_of(problem: PlanningProblem) -> Terrain:
         gaps=tuple(gaps),
         regions=regions,
         open_cells=open_cells,
-        matter=matter,
+        matter=np.asarray(world.cells != Cell.FREE),
         start=start,
         reachable=parts == parts[tuple(start)],
     )
 
 
-def start_cell(frame: GridFrame, free: Bools, matter: Bools, start_m: Vec3) -> Ints:
-    """The cell (3,) where paths from that position begin: its own, or the nearest flyable one.
+def start_cell(
+    map: SemanticMap, limits: VehicleLimits, free: Bools, start_m: Vec3, *, passable: Collection[str] = ()
+) -> Ints:
+    """The cell (3,) where paths from that position begin: its own, else the nearest one that can be flown to.
+
+    Args:
+        map: what is known.
+        limits: the vehicle.
+        free: flyable cells (nz, ny, nx) to choose from.
+        start_m: where the vehicle is, metres.
+        passable: ids of regions that are taken as passable besides those known to be.
 
     Raises:
-        InfeasibleError: there is none within `SNAP_M`, straight through free cells.
+        InfeasibleError: there is none within `SNAP_M` (or a cell's diagonal) that a straight way which
+            `mintpilot.planning.checks.check_path` allows leads to.
     """
+    frame = map.frame
     own: Ints = _cells_of(frame, np.array([start_m]))[0]
-    if frame.contains(own)[0] and free[tuple(own)]:
-        return own
-    reach = int(np.ceil(SNAP_M / frame.resolution_m)) + 1
-    cells = cells_around(frame, own, reach)
+    reach_m = max(SNAP_M, frame.resolution_m * (2 if frame.is_flat else 3) ** 0.5)
+    cells = cells_around(frame, own, int(np.ceil(reach_m / frame.resolution_m)) + 1)
     cells = cells[free[tuple(cells.T)]]
     away = distances_m(frame, cells, start_m)
-    order = np.lexsort((np.ravel_multi_index(tuple(cells.T), frame.shape), np.round(away, 9)))
-    for i in order:
-        if away[i] > SNAP_M:
-            break
-        ray = rays(frame, cells[i : i + 1], start_m)[0]
-        ray = ray[np.any(ray != own, axis=1)]
-        if frame.contains(ray).all() and not matter[tuple(ray.T)].any():
-            return np.asarray(cells[i], np.int64)
+    cells, away = cells[away <= reach_m], away[away <= reach_m]
+    if len(cells):
+        centres = frame.centres_of(cells)
+        here = np.asarray(start_m, float)
+        near = surroundings(map, np.vstack([here, centres]), limits.clearance_m, passable=passable)
+        order = np.lexsort(
+            (np.ravel_multi_index(tuple(cells.T), frame.shape), np.round(away, 9), np.any(cells != own, axis=1))
+        )
+        for i in order:
+            if first_breach(np.stack([here, centres[i]]), near)[1] < 0:
+                return np.asarray(cells[i], np.int64)
     raise InfeasibleError(
         f"start ({start_m[0]:.2f}, {start_m[1]:.2f}, {start_m[2]:.2f}) is not in flyable space, and no flyable cell is "
-        f"within {SNAP_M} m straight through free space; start from elsewhere, or reduce the vehicle's radius or margin"
+        f"within {reach_m:.2g} m straight through free space; start from elsewhere, or reduce the vehicle's radius or "
+        "margin"
     )
+
+
+def can_start(map: SemanticMap, limits: VehicleLimits, position_m: Vec3) -> bool:
+    """Whether a plan that relies on no answer could start from there."""
+    try:
+        start_cell(map, limits, known_flyable(map, limits), position_m)
+    except InfeasibleError:
+        return False
+    return True
+
+
+def _start_of(problem: PlanningProblem, free: Bools, open_cells: Bools, settled: Collection[str]) -> Ints:
+    """Where paths begin: outside all regions if the start allows it, else as if the open ones were passable."""
+    world, limits, start_m = problem.map, problem.limits, problem.start_m
+    try:
+        return start_cell(world, limits, free & ~open_cells, start_m)
+    except InfeasibleError:
+        return start_cell(world, limits, free, start_m, passable=settled)
 
 
 def cells_around(frame: GridFrame, centre: Ints, reach: int) -> Ints:

@@ -10,7 +10,6 @@ from mintpilot.core.plan import VehicleLimits
 from mintpilot.core.semantic_map import SemanticMap
 from mintpilot.core.trajectory import Trajectory
 from mintpilot.planning.checks import check_path
-from mintpilot.planning.flyable import known_flyable
 from mintpilot.planning.motion import Motion, corner_motion
 from mintpilot.planning.smoothing import Sight, heading
 
@@ -30,7 +29,7 @@ def plan_trajectory(
     sample_s: float = 0.02,
     speed_mps: float | None = None,
 ) -> Trajectory:
-    """A smooth motion along the path, at rest at both ends, through known flyable cells only.
+    """A smooth motion along the path, at rest at both ends, that keeps the clearance from all not known passable.
 
     Lines of sight cut needless corners off the path; what is left is flown with rounded corners, each as fast as its
     surroundings allow, at worst stopping in it. Speed and acceleration are hard limits (see `motion`), the heading
@@ -52,7 +51,7 @@ def plan_trajectory(
 
     Raises:
         InputError: an argument is not finite or out of range.
-        InfeasibleError: the path leaves the known flyable cells.
+        InfeasibleError: the path comes nearer than the clearance to something.
     """
     path = _checked_path(path_m)
     speed = limits.cruise_mps if speed_mps is None else speed_mps
@@ -66,7 +65,7 @@ def plan_trajectory(
     problem = check_path(path, map, limits)
     if problem:
         raise InfeasibleError(f"this path cannot be flown: {problem}. Plan again on the present map")
-    sight = Sight(known_flyable(map, limits), map.frame)
+    sight = Sight(map, limits, path)
     corners, stops = _corners(path, sight)
     yaw_ends = (start_yaw_rad, end_yaw_rad)
     if len(corners) < 2:
@@ -96,8 +95,8 @@ def _checked_path(path_m: Floats) -> Floats:
 def _corners(path: Floats, sight: Sight) -> tuple[Floats, int]:
     """Corners after the shortcut, and how many of the first inner ones must be stopped at.
 
-    A start beside flyable space is left as it is up to the first way-point that is flyable: `check_path` has passed
-    that straight way, and the vehicle stops where it ends, so that it uses nothing else of what lies there.
+    A start that is too near to something is left as it is up to the first way-point that is not: `check_path` has
+    passed that straight way, and the vehicle stops where it ends, so that it uses nothing else of what lies there.
     """
     first = 0
     while first < len(path) - 1 and not sight.clear(path[first], path[first]):
@@ -108,13 +107,13 @@ def _corners(path: Floats, sight: Sight) -> tuple[Floats, int]:
 def _clear_motion(
     corners: Floats, stops: int, sight: Sight, *, speed_mps: float, acceleration_mps2: float, sample_s: float
 ) -> Motion:
-    """Lowers the speed at corners whose turn leaves the allowed cells, until none does: a stop never does."""
+    """Lowers the speed at corners whose turn comes too near to something, until none does: a stop never does."""
     corner_mps = np.full(max(len(corners) - 2, 0), speed_mps)
     corner_mps[:stops] = 0.0
     fine = sample_s / int(np.ceil(sample_s / _CHECK_S))
     while True:
         motion = corner_motion(corners, corner_mps, peak_mps=speed_mps, acceleration_mps2=acceleration_mps2)
-        if len(corners) - 2 < stops:  # nothing but the way into flyable space
+        if len(corners) - 2 < stops:  # nothing but the way out
             return motion
         from_s = float(motion.corner_s[stops - 1]) if stops else 0.0
         bad = np.concatenate([_blocked_times(motion, corners[0], sight, step, from_s) for step in {fine, sample_s}])
@@ -122,7 +121,7 @@ def _clear_motion(
             return motion
         live = np.flatnonzero(corner_mps > 0)
         if not len(live):  # stopping everywhere is the polyline itself, which is clear: only a defect can lead here
-            raise InfeasibleError("no motion along this path stays in known flyable cells. Plan again with more margin")
+            raise InfeasibleError("no motion along this path keeps its clearance. Plan again with more margin")
         guilty = np.unique(live[np.argmin(np.abs(bad[:, None] - motion.corner_s[None, live]), axis=1)])
         corner_mps[guilty] *= 0.8
         corner_mps[corner_mps < _SLOWEST_MPS] = 0.0
@@ -133,7 +132,7 @@ def _times(motion: Motion, step_s: float) -> Floats:
 
 
 def _blocked_times(motion: Motion, start: Floats, sight: Sight, step_s: float, from_s: float) -> Floats:
-    """When, from ``from_s`` on, the motion leaves the allowed cells."""
+    """When, from ``from_s`` on, the motion comes too near to something."""
     time = _times(motion, step_s)
     blocked = sight.blocked_pieces(start + motion.sample(time)[0]) & (time[:-1] >= from_s)
     return np.asarray(time[:-1][blocked] + step_s / 2)

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from mintpilot.core.geometry import Box, Floats, Vec3
+from mintpilot.core.geometry import Bools, Box, Floats, Vec3
 from mintpilot.core.mission import Outcome, Verdict
 from mintpilot.core.plan import Stop
 from mintpilot.core.ports import Judge
@@ -59,8 +59,8 @@ class SceneJudge(Judge):
         found: list[tuple[int, Verdict]] = []
         for smoke in self._scene.smokes:
             if smoke.toxic:
-                inside = smoke.extent_m.contains(position_m)
-                self._note(found, inside, Outcome.TOXIC_SMOKE, f"it flew into the toxic smoke '{smoke.id}'")
+                inside = self._touches(smoke.extent_m, position_m)
+                self._note(found, inside, Outcome.TOXIC_SMOKE, f"its hull was in the toxic smoke '{smoke.id}'")
         outside = ~self._scene.volume.contains(position_m)
         self._note(found, outside, Outcome.LEFT_VOLUME, "it left the volume in which it may fly")
         spent = time_s - self._mission_start_s > self._rules.endurance_s
@@ -163,6 +163,13 @@ class SceneJudge(Judge):
         inside = [room.occupant for room in self._scene.rooms if room.occupant is not None]
         people: list[Person | Landmark] = [*self._scene.persons, *inside, *self._scene.landmarks]
         return [p.id for p in people if p.must_be_found]
+
+    def _touches(self, box: Box, position_m: Floats) -> Bools:
+        """At which positions (n, 3) of its centre the drone's hull, an upright cylinder, reaches into a box."""
+        beyond = np.maximum(np.maximum(box.lo_m - position_m, position_m - box.hi_m), 0.0)
+        beside = np.hypot(beyond[:, 0], beyond[:, 1]) < self._rules.radius_m
+        touching: Bools = beside & (beyond[:, 2] < self._rules.half_height_m)
+        return touching
 
     @staticmethod
     def _note(found: list[tuple[int, Verdict]], flags: np.ndarray, outcome: Outcome, reason: str) -> None:

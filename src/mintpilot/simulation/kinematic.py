@@ -63,7 +63,7 @@ class KinematicSimulator(Vehicle, Judge):
         del seed
         self._floor_m = scene.volume.lo_m[2]
         self._judge = SceneJudge(scene, rules)
-        self._obstacles = Obstacles(scene, rules.radius_m)
+        self._obstacles = Obstacles(scene, rules)
         self._time_s = 0.0
         self._position: Floats = np.asarray(scene.start_m, float)
         self._velocity: Floats = np.zeros(3)

@@ -25,8 +25,8 @@ def scene_of_map(
     """What the map says is there: walls of its occupied cells, and regions with their declared truth.
 
     A region counts as toxic when it is known or declared to be blocked; one of unknown truth counts as harmless, since
-    nothing is known that could happen there. A region that is no box is split into boxes. Objects are landmarks: a
-    thing on a map is a place to get to, and cells alone say where matter is.
+    nothing is known that could happen there. A region that is no box is split into boxes. Objects are landmarks to get
+    to and, unless they are not solid or have no size, solids of their extent.
 
     Args:
         map: the map, with its regions and rooms.
@@ -42,6 +42,9 @@ def scene_of_map(
     walls = tuple(
         Solid(id=f"wall-{i}", kind="wall", extent_m=_tall(box, frame))
         for i, box in enumerate(boxes_of(map.cells == Cell.OCCUPIED, frame))
+    )
+    things = tuple(
+        Solid(id=o.id, kind=o.label, extent_m=o.box_m) for o in map.objects if o.solid and any(o.box_m.size_m)
     )
     smokes = []
     for region in map.regions:
@@ -67,7 +70,7 @@ def scene_of_map(
         name=name,
         volume=_tall(frame.box, frame),
         start_m=start_m,
-        solids=walls,
+        solids=(*things, *walls),
         smokes=tuple(smokes),
         rooms=tuple(rooms),
         landmarks=(

@@ -61,7 +61,7 @@ class MujocoSimulator(Vehicle, Camera, Judge):
     ) -> None:
         world = build_world(scene) if spec is None else spec
         airframe = Airframe()
-        add_quadrotor(world, scene.start_m, radius_m=rules.radius_m, airframe=airframe)
+        add_quadrotor(world, scene.start_m, rules=rules, airframe=airframe)
         self._drone = MujocoDrone(world.compile(), airframe)
         self._scene, self._rules, self._seed, self._camera_size = scene, rules, seed, camera_size
         self._judge = SceneJudge(scene, rules)

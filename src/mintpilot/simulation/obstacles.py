@@ -8,10 +8,8 @@ import numpy as np
 
 from mintpilot.core.compiled import compiled
 from mintpilot.core.geometry import Box, Floats, Ints
-from mintpilot.simulation.scene import Person, Scene, Shape, Solid
+from mintpilot.simulation.scene import FlightRules, Person, Scene, Shape, Solid
 
-HULL_HALF_HEIGHT_M = 0.06
-"""The hull is an upright cylinder of the rules' radius and twice this height (it stays so: tilt is not counted)."""
 _PERSON_RADIUS_M = 0.3
 _PERSON_HEIGHT_M = 0.3
 _SHAPES = {Shape.BOX: 0, Shape.CYLINDER: 1, Shape.SPHERE: 2}
@@ -20,10 +18,11 @@ _SHAPES = {Shape.BOX: 0, Shape.CYLINDER: 1, Shape.SPHERE: 2}
 class Obstacles:
     """All that can be touched: solids, rooms (shut, hence solid), people, and the building's side walls.
 
-    People are three flat cylinders along the body. Floor and roof are left to the flight volume.
+    The hull is an upright cylinder as the rules say. People are three flat cylinders along the body. Floor and roof are
+    left to the flight volume.
     """
 
-    def __init__(self, scene: Scene, radius_m: float) -> None:
+    def __init__(self, scene: Scene, rules: FlightRules) -> None:
         solids = [*scene.solids, *_rooms(scene), *_people(scene), *_walls(scene.volume)]
         self._names = [s.id for s in solids]
         self._shape: Ints = np.array([_SHAPES[s.shape] for s in solids], np.int64)
@@ -31,7 +30,7 @@ class Obstacles:
         self._hi: Floats = np.array([s.extent_m.hi_m for s in solids], float)
         # Those that stand from the start do so during the survey, too, when the mission's clock is below 0.
         self._appears: Floats = np.array([s.appears_s if s.appears_s > 0 else -math.inf for s in solids], float)
-        self._radius = radius_m
+        self._hull = rules.radius_m, rules.half_height_m
 
     def first_touch(self, position_m: Floats, mission_s: Floats) -> tuple[int, str] | None:
         """The first sample at which the hull touches something, and what.
@@ -40,7 +39,8 @@ class Obstacles:
             position_m: (n, 3) positions of the hull's centre.
             mission_s: (n,) seconds of mission flight.
         """
-        spare = np.array([self._radius, self._radius, HULL_HALF_HEIGHT_M])
+        radius, half_height = self._hull
+        spare = np.array([radius, radius, half_height])
         low, high = position_m.min(axis=0) - spare, position_m.max(axis=0) + spare
         near = np.flatnonzero(((self._hi >= low) & (self._lo <= high)).all(axis=1))
         if not len(near):
@@ -52,7 +52,8 @@ class Obstacles:
             self._lo[near],
             self._hi[near],
             self._appears[near],
-            self._radius,
+            radius,
+            half_height,
         )
         return (int(sample), self._names[near[which]]) if sample >= 0 else None
 
@@ -91,7 +92,14 @@ def _walls(volume: Box, thickness_m: float = 10.0) -> list[Solid]:
 
 @compiled()
 def _first_touch(
-    position: Floats, mission_s: Floats, shape: Ints, lo: Floats, hi: Floats, appears: Floats, radius: float
+    position: Floats,
+    mission_s: Floats,
+    shape: Ints,
+    lo: Floats,
+    hi: Floats,
+    appears: Floats,
+    radius: float,
+    half_height: float,
 ) -> tuple[int, int]:
     for i in range(len(position)):
         x, y, z = position[i]
@@ -101,11 +109,11 @@ def _first_touch(
             if shape[k] == 2:
                 r = 0.5 * min(hi[k, 0] - lo[k, 0], hi[k, 1] - lo[k, 1], hi[k, 2] - lo[k, 2])
                 side = max(np.hypot(x - 0.5 * (lo[k, 0] + hi[k, 0]), y - 0.5 * (lo[k, 1] + hi[k, 1])) - radius, 0.0)
-                up = max(abs(z - 0.5 * (lo[k, 2] + hi[k, 2])) - HULL_HALF_HEIGHT_M, 0.0)
+                up = max(abs(z - 0.5 * (lo[k, 2] + hi[k, 2])) - half_height, 0.0)
                 if side * side + up * up < r * r:
                     return i, k
                 continue
-            if max(lo[k, 2] - z, z - hi[k, 2]) >= HULL_HALF_HEIGHT_M:
+            if max(lo[k, 2] - z, z - hi[k, 2]) >= half_height:
                 continue
             if shape[k] == 1:
                 r = 0.5 * min(hi[k, 0] - lo[k, 0], hi[k, 1] - lo[k, 1])

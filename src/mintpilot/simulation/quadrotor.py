@@ -10,7 +10,7 @@ import numpy as np
 
 from mintpilot.core.geometry import Floats, Vec3
 from mintpilot.simulation.engine import load_mujoco
-from mintpilot.simulation.obstacles import HULL_HALF_HEIGHT_M
+from mintpilot.simulation.scene import FlightRules
 
 DRONE = "drone"
 """Name of the body; ``drone:hull`` is what collides."""
@@ -51,12 +51,12 @@ class Airframe:
         return np.asarray(np.linalg.inv(wrench))
 
 
-def add_quadrotor(spec: Any, start_m: Vec3, *, radius_m: float, airframe: Airframe | None = None) -> None:
+def add_quadrotor(spec: Any, start_m: Vec3, *, rules: FlightRules, airframe: Airframe | None = None) -> None:
     """Adds the drone, hovering level at ``start_m``, to a ``mujoco.MjSpec``.
 
     Body ``drone`` with free joint ``drone``; actuators ``rotor:0`` to ``rotor:3`` (thrust in newtons, with lag);
-    cameras ``rgbd`` (forward and slightly down) and ``chase`` (from behind). The hull ``drone:hull``, a cylinder of
-    ``radius_m``, is all of it that collides, and is not drawn.
+    cameras ``rgbd`` (forward and slightly down) and ``chase`` (from behind). The hull ``drone:hull``, a cylinder as
+    the rules say, is all of it that collides, and is not drawn.
     """
     mujoco = load_mujoco()
     frame = airframe or Airframe()
@@ -66,9 +66,8 @@ def add_quadrotor(spec: Any, start_m: Vec3, *, radius_m: float, airframe: Airfra
     body.explicitinertial = True
     body.mass, body.inertia = frame.mass_kg, list(frame.inertia_kgm2)
     body.ipos, body.iquat = [0, 0, 0], [1, 0, 0, 0]
-    body.add_geom(
-        name=HULL, type=geom.mjGEOM_CYLINDER, size=[radius_m, HULL_HALF_HEIGHT_M, 0], mass=0, group=_HIDDEN_GROUP
-    )
+    size = [rules.radius_m, rules.half_height_m, 0]
+    body.add_geom(name=HULL, type=geom.mjGEOM_CYLINDER, size=size, mass=0, group=_HIDDEN_GROUP)
     _add_looks(body, geom, frame)
     for i, (x, y, sign) in enumerate(frame.rotors):
         body.add_site(name=f"rotor:{i}", pos=[x, y, 0.02], size=[0.01] * 3, group=_HIDDEN_GROUP)

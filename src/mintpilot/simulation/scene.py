@@ -48,7 +48,7 @@ class Smoke:
     id: str
     extent_m: Box
     toxic: bool
-    """Truth: flying through it ends the mission."""
+    """Truth: a hull that reaches into it ends the mission."""
     prior_safe: float = 0.5
     """Probability from which the truth was drawn."""
 
@@ -87,7 +87,7 @@ class ClosedRoom:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Landmark:
-    """Something that a map made by others names: a place to get to, no matter to bump into."""
+    """Something that a map made by others names: a place to get to. What can be touched there is a solid of its own."""
 
     id: str
     """Unique in the scene, e.g. ``box-red``."""
@@ -126,7 +126,9 @@ class FlightRules:
     """What ends a simulated flight, and its disturbances."""
 
     radius_m: float = 0.27
-    """Hull of the drone: any contact is a collision."""
+    """Radius of the drone's hull, an upright cylinder, metres: any contact is a collision."""
+    half_height_m: float = 0.06
+    """Half the height of that hull, metres (it stays upright: tilt is not counted)."""
     endurance_s: float = float("inf")
     """Flight time of the mission (the survey is flown on another battery), seconds."""
     person_reach_m: float = 2.0
