@@ -17,7 +17,7 @@ from mintpilot.cli.demos import demo_mission
 from mintpilot.core.errors import DeviceError, InputError, UnknownNameError
 from mintpilot.core.mission import Outcome
 from mintpilot.core.ports import Completion, LanguageModel
-from mintpilot.core.query import Command, Reply
+from mintpilot.core.query import Order, Reply
 from mintpilot.language.doubles import FunctionModel
 from mintpilot.mission_file.schema import LanguageSpec, MissionFile
 
@@ -182,7 +182,7 @@ def test_short_answers_are_understood_in_the_operators_language(lang, text, repl
 @pytest.mark.parametrize("text", ["halt", "Stopp!", "stop", "come back", "zurück"])
 def test_orders_are_heard_in_both_languages(text: str) -> None:
     meaning = Talk(lang="de").understand(text, questions.SMOKE, 5.0)
-    assert meaning.command in (Command.HOLD, Command.RETURN)
+    assert meaning.command in (Order.HOLD, Order.RETURN)
 
 
 def says(reading: str, opposite: str) -> FunctionModel:

@@ -21,7 +21,7 @@ from tests.language.questions import BOX
 
 from mintpilot.assembly.talk import Talk
 from mintpilot.core.errors import DeviceError, InputError
-from mintpilot.core.query import Command, Question, Reply
+from mintpilot.core.query import Order, Question, Reply
 from mintpilot.interaction.screen_words import screen_words
 from mintpilot.interaction.terminal import TerminalOperator
 
@@ -85,7 +85,7 @@ def test_replies(pipe, typed, reply):
 
 @pytest.mark.parametrize(
     ("typed", "command"),
-    [(b"stop", Command.HOLD), (b"HOLD!", Command.HOLD), (b"abort", Command.ABORT), (b"return", Command.RETURN)],
+    [(b"stop", Order.HOLD), (b"HOLD!", Order.HOLD), (b"abort", Order.ABORT), (b"return", Order.RETURN)],
 )
 def test_orders_are_obeyed_at_once(pipe, typed, command):
     asked, _ = operator(pipe)

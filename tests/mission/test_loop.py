@@ -11,7 +11,7 @@ from mintpilot.assembly.crews import Choices, crew_for
 from mintpilot.assembly.worlds import build_world
 from mintpilot.core.events import Event, LegFlown, PlanChosen
 from mintpilot.core.mission import Outcome
-from mintpilot.core.query import Answer, Command, Reply
+from mintpilot.core.query import Answer, Order, Reply
 from mintpilot.core.tree import StopReason
 from mintpilot.interaction.scripted import FunctionOperator, RecordedOperator
 from mintpilot.mission.loop import fly_mission
@@ -55,8 +55,8 @@ def test_silence_without_a_cautious_way_stays_safe() -> None:
     assert not enters_cloud(path)
 
 
-@pytest.mark.parametrize("command", [Command.ABORT, Command.HOLD, Command.RETURN])
-def test_orders_are_obeyed_at_once(command: Command) -> None:
+@pytest.mark.parametrize("command", [Order.ABORT, Order.HOLD, Order.RETURN])
+def test_orders_are_obeyed_at_once(command: Order) -> None:
     operator = RecordedOperator([Answer(reply=Reply.UNSURE, latency_s=1.0, text="stop", command=command)])
     record, path, _ = fly(hall(), operator)
     assert record.outcome is Outcome.ABORTED

@@ -129,12 +129,14 @@ class Reply(StrEnum):
     TIMEOUT = "timeout"
 
 
-class Command(StrEnum):
+class Order(StrEnum):
     """What an operator may order instead of answering; obeyed at once."""
 
     HOLD = "hold"
-    ABORT = "abort"
+    CONTINUE = "continue"
     RETURN = "return"
+    LAND = "land"
+    ABORT = "abort"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -146,7 +148,7 @@ class Answer:
     """From the question's appearance to the reply, seconds."""
     text: str = ""
     """Raw words, as given. Data, never an instruction to this program."""
-    command: Command | None = None
+    command: Order | None = None
     """An order, which overrides ``reply``."""
     also: tuple[tuple[Query, bool], ...] = ()
     """What was said beyond the question (``not the red one, the blue one``): cuts with their answers. They teach the
@@ -156,17 +158,3 @@ class Answer:
     better_s: float | None = None
     """When better words (`mintpilot.core.ports.BetterWords`) were shown, seconds after the question's appearance; None:
     the person had the first words only."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Meaning:
-    """What free words, typed or heard, mean as an answer to a question."""
-
-    reply: Reply | None
-    """None: they do not map to an answer, ask again."""
-    command: Command | None = None
-    """An order, which overrides ``reply``."""
-    also: tuple[tuple[Query, bool], ...] = ()
-    """See `Answer.also`."""
-    by: str = "rules"
-    """Who understood them."""

@@ -15,13 +15,16 @@ from rich.text import Text
 
 from mintpilot.core.errors import DeviceError
 from mintpilot.core.ports import BetterWords, Operator, Understand
-from mintpilot.core.query import Answer, Question, Reply
+from mintpilot.core.query import Answer, Order, Query, Question, Reply
+from mintpilot.core.reading import ReadingKind, reply_of
 from mintpilot.interaction.screen_words import screen_words
 
 _LONGEST_LINE = 4096
 """Bytes; what is typed beyond them without a line's end is thrown away."""
 _KEYS = 18
 """Columns for what may be typed."""
+_ANSWERS = (ReadingKind.YES, ReadingKind.NO, ReadingKind.UNSURE, ReadingKind.EVIDENCE)
+"""Readings that answer; what would have to be read back is asked for again."""
 _GLANCE_S = 0.05
 """While better words may come, it is looked for them so often."""
 
@@ -106,17 +109,17 @@ class TerminalOperator(Operator):
                 self._console.print(Text(self._words.silence, style="yellow"))
                 return self._answer(turn, Reply.TIMEOUT)
             if line:
-                meaning = self._understand(line, question, max(0.0, turn.deadline_s - self._clock()))
+                reading = self._understand(line, question, max(0.0, turn.deadline_s - self._clock()))
                 said = Answer(
-                    reply=meaning.reply if meaning.reply is not None and meaning.command is None else Reply.UNSURE,
+                    reply=reply_of(reading, question),
                     latency_s=self._clock() - turn.started_s,
                     text=line,
-                    command=meaning.command,
-                    also=meaning.also,
-                    understood_by=meaning.by,
+                    command=reading.order if reading.order is not Order.CONTINUE else None,
+                    also=tuple((Query(literals=(literal,)), holds) for literal, holds in reading.evidence),
+                    understood_by=reading.by,
                     better_s=turn.better_s,
                 )
-                if meaning.reply is not None or meaning.command is not None:
+                if reading.kind in _ANSWERS or said.command is not None:
                     return said
                 if asked_again:
                     self._console.print(Text(self._words.given_up, style="yellow"))

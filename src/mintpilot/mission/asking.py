@@ -11,7 +11,7 @@ from mintpilot.core.events import Asked, Deliberated, Noticed, Timed
 from mintpilot.core.gap import KnowledgeGap
 from mintpilot.core.mission import AskingSettings
 from mintpilot.core.ports import Ask, Fly, Operator, Recorder
-from mintpilot.core.query import Command, Query, Question
+from mintpilot.core.query import Order, Query, Question
 from mintpilot.core.tree import Mint, ScoredQuery
 from mintpilot.elicitation.wording import word_question
 from mintpilot.mission.mind import Mind, Thought, learn
@@ -79,7 +79,7 @@ class Interview:
             self.operator.tell(remark)
 
 
-def put_question(interview: Interview, mind: Mind, ask: Ask) -> tuple[Mind, Command | None]:
+def put_question(interview: Interview, mind: Mind, ask: Ask) -> tuple[Mind, Order | None]:
     """Asks one question and learns from the answer; a command comes back instead of being learnt from."""
     record = interview.recorder.record
     scored: ScoredQuery = ask.scored

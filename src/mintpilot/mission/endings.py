@@ -7,7 +7,7 @@ from mintpilot.core.gap import Assumptions
 from mintpilot.core.mission import Outcome, Verdict
 from mintpilot.core.plan import PlanningProblem, Site, Stop
 from mintpilot.core.ports import Judge, Operator, Planner
-from mintpilot.core.query import Command
+from mintpilot.core.query import Order
 from mintpilot.core.task import Action
 from mintpilot.mission.flight import End, Pilot, Progress
 
@@ -34,11 +34,11 @@ def stay_or_return(pilot: Pilot, planner: Planner, operator: Operator, home: Sto
     return Verdict(outcome=Outcome.NO_SAFE_PLAN, reason=f"{why} {where}")
 
 
-def obey(pilot: Pilot, planner: Planner, operator: Operator, home: Stop, command: Command) -> Verdict:
+def obey(pilot: Pilot, planner: Planner, operator: Operator, home: Stop, command: Order) -> Verdict:
     """The operator's order ends the mission: hold at once, or go home."""
     pilot.vehicle.hold()
     operator.tell("Understood.")
-    if command is Command.RETURN and go_home(pilot, planner, home):
+    if command is Order.RETURN and go_home(pilot, planner, home):
         return Verdict(outcome=Outcome.ABORTED, reason="The operator called the drone back; it is at the start.")
     return Verdict(outcome=Outcome.ABORTED, reason=f"The operator ordered '{command.value}'; the drone holds.")
 

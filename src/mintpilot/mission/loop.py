@@ -10,7 +10,7 @@ from mintpilot.core.errors import DeviceError, InfeasibleError
 from mintpilot.core.events import MapUpdated, MissionEnded, MissionStarted, Noticed, PlanChosen, Timed
 from mintpilot.core.mission import Outcome, Verdict
 from mintpilot.core.ports import Ask, Fly, Judge, Operator, Recorder, Vehicle
-from mintpilot.core.query import Command
+from mintpilot.core.query import Order
 from mintpilot.core.semantic_map import SemanticMap
 from mintpilot.elicitation.wording import word_question
 from mintpilot.mission.account import account
@@ -102,7 +102,7 @@ def _think_and_fly(crew: Crew, mind: Mind) -> Verdict:
         except InfeasibleError as error:
             why = str(error)
             break
-        if isinstance(decision, Command):
+        if isinstance(decision, Order):
             return obey(pilot, thinking.planner, crew.operator, home, decision)
         pilot.map = mind.map
         if decision.plan is None:
@@ -119,7 +119,7 @@ def _think_and_fly(crew: Crew, mind: Mind) -> Verdict:
     return stay_or_return(pilot, thinking.planner, crew.operator, home, why)
 
 
-def _settle(crew: Crew, mind: Mind, interview: Interview, begun_s: float) -> tuple[Mind, Fly | Command]:
+def _settle(crew: Crew, mind: Mind, interview: Interview, begun_s: float) -> tuple[Mind, Fly | Order]:
     """Thinks and asks until it is clear what to fly (method, sections 3 to 5)."""
     record = crew.recorder.record
     while True:

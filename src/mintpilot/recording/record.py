@@ -12,7 +12,7 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, JsonValue, Validati
 from mintpilot.core.errors import RecordError
 from mintpilot.core.gap import GapKind
 from mintpilot.core.mission import Outcome
-from mintpilot.core.query import Command, Reply
+from mintpilot.core.query import Order, Reply
 from mintpilot.core.tree import LeafReason, StopReason
 
 SCHEMA_VERSION = 1
@@ -82,7 +82,7 @@ class QuestionRecord(Part):
     wording_s: Figure
     attempt: int
     reply: Reply
-    command: Command | None
+    command: Order | None
     answer_text: str
     """As it was given: data, never an instruction."""
     latency_s: Figure
