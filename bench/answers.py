@@ -158,7 +158,18 @@ def main() -> None:
         keep(section)
 
 
-NOTES: tuple[str, ...] = ()
+NOTES = (
+    "First run, before anything was mended: nothing taken plainly and no false order either, 15 read back though not "
+    "said, 130 times caution that was not said (twice the opposite was said), yes or no settled at first try 52.5 % "
+    "typed and 36.2 % by voice, after one read-back 61.0 %. Mended then, nothing of it in what may be taken plainly: "
+    "Spanish *nadie está dentro* was read as somebody inside, *I don't* as *don't*, French *quelqu'un* as a question; "
+    "*I am safe* was read back, *yeah, right* and *nothing toxic* misread (seen in the package's own list).",
+    "The bound takes the answers for independent. They are variants of fewer phrases: over the distinct phrases alone "
+    "(1,209 that say no guarded reply) it is 0.25 %.",
+    "On the package's own 2,872 English answers the rules of 2026-11-22, made with an eye on them, understood 98.7 %. "
+    "These understand 59.4 % at once and 62.4 % after a read-back (yes or no: 32.7 and 38.2 %); none is taken that was not said.",
+    "Most of what is asked again are slips of typing, words outside the closed vocabulary, and hedged answers.",
+)
 
 
 if __name__ == "__main__":

@@ -31,6 +31,7 @@ from mintpilot.core.gap import PASSABLE, GapKind
 from mintpilot.core.mission import Outcome, Verdict
 from mintpilot.core.ports import BetterWords, Operator, Understand
 from mintpilot.core.query import Answer, Question, Reply
+from mintpilot.core.reading import ReadingKind, reply_of
 from mintpilot.language.doubles import FunctionModel
 from mintpilot.mission.loop import fly_mission
 from mintpilot.mission_file.schema import MissionFile
@@ -105,14 +106,18 @@ class Person(Operator):
         if any(word in heard.text.lower().split() for word in TURNED):
             yes = not yes
         text = str(self._rng.choice([*(self.YES if yes else self.NO), *self.NEITHER[: self._rng.integers(0, 3)]]))
-        meaning = self._understand(text, heard, 0.4)
+        reading = self._understand(text, heard, 0.4)
+        if reading.kind is ReadingKind.READ_BACK:  # believes what is read back where that is the truth
+            meant = Reply.YES if answer.reply is Reply.YES else Reply.NO
+            reply = reading.reply if reading.reply is meant else Reply.UNSURE
+        else:
+            reply = reply_of(reading, heard)
         return Answer(
-            reply=meaning.reply or Reply.UNSURE,
+            reply=reply,
             latency_s=1.0,
             text=text,
-            command=meaning.command,
-            also=meaning.also,
-            understood_by=meaning.by,
+            command=reading.order,
+            understood_by=reading.by,
             better_s=0.0 if made is not None else None,
         )
 
@@ -276,8 +281,9 @@ class _Odd(Operator):
         self._understand = understand
 
     def ask(self, question: Question, patience_s: float, better: BetterWords | None = None) -> Answer:
-        meaning = self._understand("hm hm", replace(question), 1.0)
-        return Answer(reply=meaning.reply or Reply.UNSURE, latency_s=0.0, text="hm hm", understood_by=meaning.by)
+        reading = self._understand("hm hm", replace(question), 1.0)
+        reply = reply_of(reading, question)
+        return Answer(reply=reply, latency_s=0.0, text="hm hm", understood_by=reading.by)
 
     def tell(self, text: str) -> None:
         """Nods."""

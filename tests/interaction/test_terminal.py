@@ -17,7 +17,7 @@ from pathlib import Path
 
 import pytest
 from rich.console import Console
-from tests.language.questions import BOX
+from tests.language.questions import BOX, SMOKE
 
 from mintpilot.assembly.talk import Talk
 from mintpilot.core.errors import DeviceError, InputError
@@ -115,7 +115,18 @@ def test_what_is_understood_goes_with_the_answer(pipe):
     pipe.say(b"Not the red one, the blue one\n")
     answer = asked.ask(BOX, 5.0)
     assert (answer.reply, answer.understood_by) == (Reply.NO, "rules")
-    assert [(cut.literals[0].values, yes) for cut, yes in answer.also] == [(frozenset({"box-2", "box-3"}), True)]
+    assert [(cut.literals[0].values, yes) for cut, yes in answer.also] == [
+        (frozenset({"box-1"}), False),
+        (frozenset({"box-2", "box-3"}), True),
+    ]
+
+
+@pytest.mark.parametrize("typed", [b"well yes, you can, thanks", b"carry on", b"show me", b"okay"])
+def test_what_would_have_to_be_read_back_is_asked_for_again(pipe, typed):
+    asked, shown = operator(pipe)
+    pipe.say(typed + b"\nn\n")
+    assert asked.ask(SMOKE, 5.0).reply is Reply.NO
+    assert shown.getvalue().count("Please say yes, no") == 1
 
 
 class Later:

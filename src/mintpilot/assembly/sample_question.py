@@ -23,8 +23,12 @@ def sample_question(kind: GapKind, *, lang: str = ENGLISH, candidates: Sequence[
     Raises:
         UnknownNameError: the language is not known.
     """
-    gap = target_gap(candidates or _BOXES) if kind is GapKind.TARGET else _PLACES[kind]
-    literal = _first_attribute(gap) if kind is GapKind.TARGET else _is(gap, gap.values[0])
+    return question_about(target_gap(candidates or _BOXES) if kind is GapKind.TARGET else _PLACES[kind], lang=lang)
+
+
+def question_about(gap: KnowledgeGap, *, lang: str = ENGLISH) -> Question:
+    """A yes/no question about that gap alone. Raises `UnknownNameError` where the language is not known."""
+    literal = _first_attribute(gap) if gap.kind is GapKind.TARGET else _is(gap, gap.values[0])
     return wording_for(word_question, language=lang)(Query(literals=(literal,)), (gap,), None)
 
 

@@ -136,7 +136,11 @@ def language_tables(result: LanguageResult) -> list[tuple[str, Sequence[str], li
     ]
     tables: list[tuple[str, Sequence[str], list[Sequence[str]]]] = [
         ("Instructions", ("way", "n", "as expected", "as something else"), [*parsed]),
-        ("Answers", ("way", "n", "understood at once", "after a read-back", "false Yes", "No for Yes"), [*answered]),
+        (
+            "Answers",
+            ("way", "n", "understood at once", "after a read-back", "taken though not said", "No for Yes"),
+            [*answered],
+        ),
         ("Wordings", ("way", "n", "accepted", "in other words", "words, template", "words, model"), [*worded]),
         ("The model's time", ("way", "for", "calls", "p50", "p95", "tokens"), [*speeds]),
         ("Ambiguous instructions", ("way", "part", "n", "exact set", "over-ask", "over-step", "unsafe"), [*ambiguous]),
@@ -150,7 +154,7 @@ def _share(part: int, whole: int) -> str:
 
 def _answered(name: str, answered: Answered) -> tuple[str, ...]:
     shares = (_share(answered.understood, answered.n), _share(answered.after_read_back, answered.n))
-    return (name, str(answered.n), *shares, str(answered.false_yes), str(answered.no_for_yes))
+    return (name, str(answered.n), *shares, str(answered.false_guarded), str(answered.no_for_yes))
 
 
 def _worded(name: str, worded: Worded) -> tuple[str, ...]:

@@ -72,12 +72,12 @@ class Parsed:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Answered:
-    """Answers understood at once, and after a read-back; a Yes that was not said; a Yes taken for a No."""
+    """Answers understood at once and after a read-back; guarded replies taken but not said; Yes taken for a No."""
 
     n: int
     understood: int
     after_read_back: int
-    false_yes: int
+    false_guarded: int
     no_for_yes: int
 
 
@@ -110,20 +110,21 @@ def parse_all(model: LanguageModel) -> Parsed:
 
 def answer_all(cases: Sequence[AnswerCase], model: LanguageModel) -> Answered:
     """Answers read. Where a person was unsure or spoke of something else, both lead to asking again and count."""
-    right = confirmed = false_yes = flipped = 0
+    right = confirmed = false_guarded = flipped = 0
     for case in cases:
         guarded = guarded_replies(case.question)
         reading = read_with_model(case.text, case.question, model, guarded=guarded, timeout_s=PATIENT_S)
         got = _as_case(reading, case.question)
         right += got == case.reading or (got in _AGAIN and case.reading in _AGAIN)
         confirmed += reading.label == f"read-back:{case.reading}"
-        false_yes += got == Reply.YES and case.reading != Reply.YES
+        is_plain = reading.kind in (ReadingKind.YES, ReadingKind.NO) and reading.reply in guarded
+        false_guarded += is_plain and got != case.reading
         flipped += got == Reply.NO and case.reading == Reply.YES
     return Answered(
         n=len(cases),
         understood=right,
         after_read_back=right + confirmed,
-        false_yes=false_yes,
+        false_guarded=false_guarded,
         no_for_yes=flipped,
     )
 

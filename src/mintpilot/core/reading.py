@@ -88,7 +88,7 @@ def guarded_replies(question: Question) -> frozenset[Reply]:
     kinds = {gap.id: gap.kind for gap in question.gaps}
     guarded: set[Reply] = set()
     for literal in question.query.literals:
-        kind = kinds[literal.gap]
+        kind = kinds.get(literal.gap)
         if kind not in (GapKind.OBSTACLE, GapKind.PRESENCE):
             return frozenset((Reply.YES, Reply.NO))
         frees = PASSABLE if kind is GapKind.OBSTACLE else ABSENT

@@ -42,8 +42,7 @@ def read_with_model(
     The model is asked twice, the second time for the opposite, and counts only where both readings agree. It can only
     suggest a reply to be read back, guarded or not, and only where no veto is among the words.
 
-    Args: as of `read_answer`, but for the model and the seconds that each of its two readings may take. An answer to a
-    read-back is never given to it.
+    Arguments as of `read_answer`; ``timeout_s`` is for each of the two. An answer to a read-back is never given to it.
     """
     reading = read_answer(text, question, guarded=guarded, lang=lang, by=by, pending=pending)
     is_final = reading.kind is not ReadingKind.AGAIN or pending is not None or by is AnsweredBy.KEY

@@ -14,9 +14,7 @@ LONGEST = 300
 _APOSTROPHES = str.maketrans(dict.fromkeys("’‘ʼ`´", "'"))
 _SPACES = re.compile(r"[ \t\r\n\u00a0\u202f]+")
 _MARK = re.compile(r"[^\w .,;!'¡?¿-]|_|\.\.+|…")
-"""Everything but letters, digits and plain punctuation: emoji, symbols, brackets, quotes, control characters, dots that
-trail off."""
-_ASKS = re.compile(r"[?¿]")
+"""Everything but letters, digits and plain punctuation: emoji, brackets, control characters, dots that trail off."""
 
 
 def spoken(text: str) -> str:
@@ -78,4 +76,4 @@ def vetoes(text: str, lang: str, reply: Reply) -> tuple[str, ...]:
 def _patterns(lang: str, reply: Reply) -> tuple[re.Pattern[str], ...]:
     known = ANSWER_WORDS[lang]
     classes = (known.denial, known.danger, known.doubt, known.condition, known.limits, known.asks)
-    return (_MARK, _ASKS, *map(words, classes), words(known.nay if reply is Reply.YES else known.aye))
+    return (_MARK, re.compile("[?¿]"), *map(words, classes), words(known.nay if reply is Reply.YES else known.aye))

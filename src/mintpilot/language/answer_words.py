@@ -72,8 +72,8 @@ class AnswerWords:
 
 
 ENGLISH = AnswerWords(
-    yes="y|yes|yeah|yep|yup|yes please|yes it is|yes i am sure|yes i'm sure|affirmative|correct|that's right|that is "
-        "right|that's correct|that is correct|absolutely|definitely|certainly|of course|sure",
+    yes="y|yes|yeah|yep|yup|yes please|yes it is|affirmative|correct|that's right|that is right|that's correct|that is "
+        "correct|absolutely|definitely|certainly|of course|sure",
     no="n|no|nope|negative|no sir",
     passable="safe|it is safe|it's safe|yes it is safe|yes it's safe|yes safe|perfectly safe|harmless|it is harmless|"
         "it's harmless|it is safe to fly through|it's safe to fly through|you can fly through it|the smoke is safe",
@@ -89,7 +89,7 @@ ENGLISH = AnswerWords(
     nay="no|nope|nah|negative|none|nobody|no ?one|neither|nor|empty|unsafe",
     aye="y|yes|yeah|yep|yup|sure|affirmative|correct|somebody|someone|person inside|people",
     denial=r"not|never|\w+n't|dont|isnt|cant|wont|cannot|without|wrong|false|mistake|incorrect|refuse\w*|forget|"
-        r"forbid\w*|kidding|jok\w+|sorry|opposite|unless|hardly|lied?|lying|take (?:it|that) back",
+        r"forbid\w*|kidding|jok\w+|sorry|opposite|unless|hardly|lied?|yeah,? right|take (?:it|that) back",
     danger=r"toxic|poison\w*|danger\w*|hazard\w*|risk\w*|burn\w*|fire|flames?|hot|acid|chlorine|gas|kill\w*|dead\w*|"
         r"die[ds]?|lethal|hurts?|injur\w*|explo\w*|careful\w*|caution|beware|watch|mind|avoid|away|around|stay|keep|"
         r"unsafe|mask",
@@ -105,17 +105,17 @@ ENGLISH = AnswerWords(
     asks="what|why|who|where|how|which|(?:^(?:is|are|am|do|does|did|can|could|may|will|would|should|has)(?= .))",
     blocked=r"(?:not|isn't|isnt|aren't|ain't|never|hardly) (?:\w+ ){0,2}(?:safe|okay|ok|harmless|clear|passable|wise|a "
         r"good idea)|unsafe|no way|never|toxic|poison\w*|danger\w*|hazardous|chlorine|acid|burning|burns?|flames?|"
-        r"explo\w*|lethal|deadly|kills?|(?:stay|keep) (?:out|away|clear|off)|avoid|(?:do not|don't|dont|must not|"
-        r"mustn't|cannot|can't|should not|shouldn't)(?! (?:know|worry|think|care|mind|stop|tell|say|see|remember|get|"
-        r"understand|take|have|quote))|(?:rather|better|would|prefer) not|rather you didn't|wouldn't|(?:go|fly|goes) "
-        r"(?:a)?round(?: it)?|absolutely not|forbidden",
-    not_blocked=r"(?:not|\w+n't|no|non|without|never|hardly) (?:\w+ ){0,2}(?:toxic|poison\w*|danger\w*|hazard\w*|acid|"
-        r"burning|flames?)|no (?:problem|worries|objections?|issues?|doubt|matter)",
-    present=r"some(?:body|one)|(?:a|an|the|my|one|two|three|four|five|six|several|some|many|\d+) (?:\w+ )?(?:man|woman|"
-        r"men|women|person|people|child|children|kids?|workers?|colleagues?|victims?|guards?|guys?)|(?:he|she|"
-        r"they)(?:'s|'re| is| are)?(?: still)? (?:in|inside|trapped|stuck)|(?:not|isn't|isnt) empty|trapped|occupied|"
-        r"unaccounted|(?:nobody|no one),? (?:but|except|besides|came|made|got|escaped|left|has (?:left|come))|(?:has "
-        r"not|hasn't|have not|haven't) (?:\w+ )?(?:come|left|got)",
+        r"explo\w*|lethal|deadly|kills?|(?:stay|keep) (?:out|away|clear|off)|avoid|(?<!i )(?<!we )(?<!they )(?:do not|"
+        r"don't|dont)(?! (?:know|worry|think|care|mind|stop))|(?:must not|mustn't|cannot|can't|should not|"
+        r"shouldn't)(?! (?:know|tell|say|see))|(?:rather|better|would|prefer) not|rather you didn't|wouldn't|(?:go|fly|"
+        r"goes) (?:a)?round(?: it)?|absolutely not|forbidden",
+    not_blocked=r"(?:not|\w+n't|no|non|without|nothing|never|hardly) (?:\w+ ){0,2}(?:unsafe|toxic|poison\w*|danger\w*|"
+        r"hazard\w*|acid|burning|flames?)|no (?:problem|worries|objections?|issues?|doubt|matter|risk|reason)",
+    present=r"some(?:body|one)|(?:a|an|my|one|two|three|four|five|six|several|some|many|\d+) (?:\w+ )?(?:man|woman|men|"
+        r"women|person|people|child|children|kids?|workers?|colleagues?|victims?|guards?|guys?)|(?:he|she|they)(?:'s|"
+        r"'re| is| are)?(?: still)? (?:in|inside|trapped|stuck)|(?:not|isn't|isnt) empty|trapped|occupied|unaccounted|"
+        r"(?:nobody|no one),? (?:but|except|besides|came|made|got|escaped|has (?:left|come))|(?:has not|hasn't|have "
+        r"not|haven't) (?:\w+ )?(?:come|left|got)",
     unsure=r"(?:do not|don't|dont|wouldn't) know|dunno|no idea|no clue|not sure|unsure|(?:can't|cannot|couldn't|can "
         r"not) (?:\w+ )?(?:tell|say|see)|hard to (?:say|tell)|no way of knowing|who knows|beats me|not certain",
     orders={
@@ -134,8 +134,7 @@ ENGLISH = AnswerWords(
         ReadingKind.WHY: "why|why do you ask|why do you want to know|why do you need to know|what for",
         ReadingKind.REPEAT: "repeat|say again|say that again|pardon|come again|again|repeat the question|what",
     },
-    articles="the|a|an|that|this", things="one|thing",
-    states="it is|it's|i mean|that is|that's|i meant|take|it has to be", negates="not|isn't",
+    articles="the|a|an|that|this", things="one|thing", states="it is|it's|i mean|that is|that's", negates="not|isn't",
     attributes={"big": "large", "bigger": "large", "little": "small", "smaller": "small", "gray": "grey"},
 )  # fmt: skip
 
@@ -153,8 +152,8 @@ GERMAN = AnswerWords(
     seems_passable="sicher|ungefährlich|harmlos|durchfliegen|(?:flieg|fliege) (?:durch|hindurch)|in ordnung",
     seems_absent="niemand|keiner|leer|nein(?=[,.;!]|$)",
     courtesies="bitte|danke|drohne|äh|ähm|hm|also|na|okay|ok|gut|hallo|tschüss|alles klar|ende|so",
-    fillers="es ist er sie das da der die ganz völlig absolut wirklich klar kannst du durch hindurch fliegen flieg zum "
-        "drin im in",
+    fillers="es ist er das da der die ganz völlig absolut wirklich klar kannst du durch hindurch fliegen flieg drin im "
+        "in",
     nay="nein|nee|nö|ne|negativ|niemand|keine?[rsnm]?|leer",
     aye="ja|jawohl|doch|jemand|genau|richtig|stimmt|leute|person ist",
     denial="nicht|nie|niemals|ohne|falsch|irrtum|quatsch|scherz|spaß|witz|sorry|gegenteil|kaum|vergiss|verboten|weder",
@@ -212,13 +211,12 @@ FRENCH = AnswerWords(
     keys={"o": "yes"},
     seems_passable="sans danger|inoffensi(?:f|ve)|c'est (?:sûr|bon)|(?:peux|peut|pouvez) (?:passer|traverser)",
     seems_absent="personne|vide|non(?=[,.;!]|$)",
-    courtesies="merci|s'il te plaît|s'il vous plaît|drone|euh|bon|alors|eh bien|ok|d'accord|bonjour|salut|monsieur|"
-        "madame|terminé",
+    courtesies="merci|s'il te plaît|s'il vous plaît|drone|euh|bon|alors|eh bien|ok|d'accord|bonjour|salut|terminé",
     fillers="c'est il elle est la le les cette on tu vous peux peut pouvez passer traverser y a à dedans ici "
         "l'intérieur ça va vas-y vas bien totalement complètement vraiment tout fait n'y n'est",
     nay="non|négatif|personne|aucune?|vide|rien", aye="oui|ouais|si|quelqu'un|(?:une|la|cette) personne|gens|bien sûr",
     denial=r"pas|jamais|ne|n'(?!y a personne|est dedans)\w+|faux|erreur|désolée?|plaisante\w*|blague|rigole|contraire|"
-        r"oublie|interdit\w*|ni",
+        r"oublie|interdit\w*",
     danger=r"toxiques?|(?<!sans )dangers?|dangereu\w+|risqu\w+|périls?|brûl\w+|feu|flammes?|chaud|acide|chlore|gaz|tue|"
         r"mort\w*|explos\w+|attention|prudent\w*|évite\w*|contourne\w*|loin|masque|poison",
     doubt=r"peut[- ]être|probable\w*|possible\w*|crois|pense|suppose\w*|espère\w*|semble\w*|dirait|pourrait|devrait|"
@@ -227,8 +225,8 @@ FRENCH = AnswerWords(
     limits="était|étaient|sera|bientôt|tard|encore|demain|hier|aujourd'hui|matin|soir|avant|après|minutes?|heures?|"
         "déjà|plus|attends?|attendez|instant|moment|partie|moitié|côté|bords?|plupart|autres?|haut|bas|dessus|milieu|"
         "un peu|deux|toutes?|gauche|droite|dit|dis|entendu|paraît|selon|d'après|apparemment|liste",
-    asks=r"quoi|pourquoi|qui|où|comment|quel\w*|lequel|laquelle|est[- ]ce|(?:^(?:peut-on|puis-je|dois-je|y a-t-il)(?= "
-        r".))",
+    asks="quoi|pourquoi|qui|où|comment|quels?|quelles?|lequel|laquelle|est[- ]ce|(?:^(?:peut-on|puis-je|dois-je|y "
+        "a-t-il)(?= .))",
     blocked=r"pas (?:\w+ ){0,2}(?:sûre?|sans danger|inoffensi\w+|bon|prudent)|toxiques?|(?<!sans )danger|dangereu\w+|"
         r"chlore|acide|flammes|brûle|mortel\w*|explos\w+|surtout pas|(?:n'y va|ne passe|n'entre|ne va|ne traverse|"
         r"n'approche)\w* pas|contourne\w*|évite\w*|mieux vaut (?:éviter|pas)|que non|préférerais (?:pas|que non)|"
@@ -255,7 +253,7 @@ FRENCH = AnswerWords(
         ReadingKind.WHY: "pourquoi|pourquoi tu demandes|pourquoi cette question|pour quoi faire",
         ReadingKind.REPEAT: "répète|répétez|pardon|comment|quoi|encore|répète la question|plaît-il",
     },
-    articles="le|la|les|une?|celle|celui|cette|ce", things="chose", states="c'est|il est|elle est|je veux dire|prends",
+    articles="le|la|les|une?|celle|celui|cette|ce", things="chose", states="c'est|il est|elle est|je veux dire",
     negates="pas",
     attributes={"gros": "large", "grosse": "large", "marron": "brown"},
 )  # fmt: skip
@@ -264,9 +262,8 @@ SPANISH = AnswerWords(
     yes="s|y|sí|si|sí sí|sí claro|claro|claro que sí|sí por favor|sí seguro|por supuesto|correcto|exacto|así es|es "
         "correcto|afirmativo|sí señor",
     no="n|no|no no|negativo|no gracias",
-    passable="es seguro|sí es seguro|está seguro|el humo es seguro|sin peligro|sí sin peligro|es inofensivo|sí es "
-        "inofensivo|inofensivo|puedes pasar|sí puedes pasar|puede pasar|puedes atravesarlo|se puede atravesar|se puede "
-        "pasar",
+    passable="es seguro|sí es seguro|el humo es seguro|sin peligro|sí sin peligro|es inofensivo|sí es inofensivo|"
+        "inofensivo|puedes pasar|sí puedes pasar|puede pasar|puedes atravesarlo|se puede atravesar|se puede pasar",
     absent="nadie|no hay nadie|no nadie|nadie dentro|no hay nadie dentro|no no hay nadie|nadie está dentro|no hay "
         "nadie ahí|no hay nadie ahí dentro|vacío|está vacío|está vacía|vacía|la sala está vacía",
     confirm="confirmo|confirmado|confirmar|confirma",
@@ -294,9 +291,9 @@ SPANISH = AnswerWords(
     not_blocked=r"(?:no|nada|sin) (?:\w+ ){0,2}(?:tóxic\w+|peligros\w+|mortal|veneno\w*)|ningún peligro|no hay "
         r"(?:problema|peligro)|no te preocupes",
     present=r"(?<!no hay )alguien|(?:un|una|mi|dos|tres|cuatro|cinco|varias|varios|\d+) (?:hombre|mujer|personas?|"
-        r"compañer\w+|niñ\w+|herid\w+|hombres|mujeres|guardia)|(?:sigue|está|siguen|están) (?:todavía )?(?:dentro|"
-        r"atrapad\w+)|no está vací[oa]|atrapad\w+|ocupad\w+|gente|nadie,? (?:salvo|excepto|menos|ha salido|salió)|no "
-        r"ha salido|falta un\w*",
+        r"compañer\w+|niñ\w+|herid\w+|hombres|mujeres|guardia)|(?<!nadie )(?:sigue|está|siguen|están) (?:todavía "
+        r")?(?:dentro|atrapad\w+)|no está vací[oa]|atrapad\w+|ocupad\w+|gente|nadie,? (?:salvo|excepto|menos|ha salido|"
+        r"salió)|no ha salido|falta un\w*",
     unsure=r"no (?:lo )?sé|ni idea|no estoy segur[oa]|difícil de decir|no sabría|no puedo (?:decir|ver)\w*|quién sabe",
     orders={
         Order.HOLD: "alto|para|pare|detente|deténgase|stop|quieto|quédate ahí|quédate quieto|pausa|no te muevas|párate",
@@ -312,8 +309,7 @@ SPANISH = AnswerWords(
         ReadingKind.WHY: "por qué|por que|por qué preguntas|para qué|por qué lo preguntas",
         ReadingKind.REPEAT: "repite|repita|repítelo|otra vez|cómo|cómo dice|perdón|qué|repite la pregunta",
     },
-    articles="el|la|los|las|una?|es[ea]|est[ea]", things="cosa", states="es|quiero decir|me refiero a|toma",
-    negates="no",
+    articles="el|la|los|las|una?|es[ea]|est[ea]", things="cosa", states="es|quiero decir|me refiero a", negates="no",
     attributes={"chica": "small", "chico": "small"},
 )  # fmt: skip
 

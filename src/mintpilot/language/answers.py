@@ -100,11 +100,9 @@ def _order_or_question(heard: _Heard) -> Reading | None:
 
 def _to_read_back(heard: _Heard, pending: Reply) -> Reading:
     """The answer to a read-back: a plain yes confirms, a plain no denies, more caution counts, nothing else does."""
-    whole = utterance(spoken(heard.text))
-    is_confirmed = whole in listed(heard.known.confirm)
-    if heard.by is AnsweredBy.TYPED:
-        is_confirmed = is_confirmed or whole in listed(heard.known.yes)
-    if is_confirmed and not vetoes(heard.text, heard.lang, Reply.YES):
+    whole, known = utterance(spoken(heard.text)), heard.known
+    confirms = listed(known.confirm if heard.by is AnsweredBy.VOICE else f"{known.confirm}|{known.yes}")
+    if whole in confirms and not vetoes(heard.text, heard.lang, Reply.YES):
         return plain_reply(pending)
     if whole in listed(heard.known.no):
         return _denied(heard, pending)
@@ -191,8 +189,12 @@ def _loose_reply(said: str, heard: _Heard) -> Reading | None:
     """A Yes or No at the beginning that is not guarded, without its opposite, a doubt or a condition."""
     known = heard.known
     begins = re.sub(rf"^(?:(?:{loose(known.courtesies)})[ ,.]+)+", "", said)
-    for reply, entries, against in ((Reply.YES, known.yes, known.nay), (Reply.NO, known.no, known.aye)):
-        if reply in heard.guarded or not re.match(rf"(?:{loose(entries)})(?![\w'])", begins):
+    for reply, entries, against in (
+        (Reply.YES, known.yes, known.nay),
+        (Reply.NO, known.no, f"{known.aye}|{known.seems_passable}"),
+    ):
+        ends = "(?=[,.;!]|$)" if known.negates in listed(entries) else "(?![\\w'])"
+        if reply in heard.guarded or not re.match(rf"(?:{loose(entries)}){ends}", begins):
             continue
         spoils = (against, known.doubt, known.condition, known.denial if reply is Reply.YES else known.not_blocked)
         if not any(words(loose(pattern)).search(begins) for pattern in spoils):
@@ -208,7 +210,7 @@ def _asks(heard: _Heard) -> bool:
 def _reply_if(value: str, question: Question) -> Reply | None:
     """The reply that a statement about the world makes of the query: every gap of the question has that value."""
     kind = GapKind.OBSTACLE if value in (PASSABLE, BLOCKED) else GapKind.PRESENCE
-    if any(gap.kind is not kind for gap in question.gaps):
+    if any(g.kind is not kind for g in question.gaps) or {g.id for g in question.gaps} != set(question.query.gap_ids):
         return None
     if len(question.gaps) > 1 and value in (PASSABLE, ABSENT):
         return None  # of several regions or rooms, "it is safe" does not say which
@@ -219,5 +221,5 @@ def _reply_if(value: str, question: Question) -> Reply | None:
 def _vocabulary(lang: str) -> frozenset[str]:
     """Every word of the closed lists, the courtesies and the fillers."""
     known = ANSWER_WORDS[lang]
-    lists = "|".join((known.yes, known.no, known.passable, known.absent, known.confirm, known.courtesies))
+    lists = "|".join((known.yes, known.no, known.passable, known.absent, known.courtesies))
     return frozenset(re.findall(r"[\w']+", spoken(f"{lists} {known.fillers}")))
