@@ -167,7 +167,8 @@ NOTES = (
     "The bound takes the answers for independent. They are variants of fewer phrases: over the distinct phrases alone "
     "(1,209 that say no guarded reply) it is 0.25 %.",
     "On the package's own 2,872 English answers the rules of 2026-11-22, made with an eye on them, understood 98.7 %. "
-    "These understand 59.4 % at once and 62.4 % after a read-back (yes or no: 32.7 and 38.2 %); none is taken that was not said.",
+    "These understand 59.4 % at once and 62.4 % after a read-back (yes or no: 32.7 and 38.2 %); no guarded reply is "
+    "taken that was not said.",
     "Most of what is asked again are slips of typing, words outside the closed vocabulary, and hedged answers.",
 )
 

@@ -58,6 +58,7 @@ def test_the_rules_come_first() -> None:
         "splendid air but not for long",
         "splendid air?",
         "splendid air 🚫",
+        "ｓplendid air",
         "perhaps splendid air",
         "splendid air, they say",
     ],

@@ -210,6 +210,7 @@ def test_what_is_said_decides_the_reading(text, kind, lang, label) -> None:
         ("the large red one", "en", "again"),
         ("yes, the blue one", "en", "again"),
         ("the blue one, I think", "en", "again"),
+        ("not the small red one", "en", "again"),
         ("big deal", "en", "again"),
         ("the red one 🙃", "en", "again"),
     ],
@@ -243,6 +244,7 @@ def test_a_no_without_a_comma_in_spanish_speech_is_ambiguous() -> None:
         ("no", "presence", "typed", Reply.NO, "yes"),
         ("nobody", "presence", "typed", Reply.NO, "again"),
         ("no", "target", "typed", Reply.YES, "again"),
+        ("No, thank you", "target", "typed", Reply.YES, "again"),
         ("wait, it is toxic", "obstacle", "typed", Reply.YES, "no"),
         ("stop", "obstacle", "voice", Reply.YES, "order:hold"),
         ("y", "obstacle", "key", Reply.YES, "yes"),
@@ -275,6 +277,7 @@ def test_keys(key, lang, label) -> None:
 
 def test_the_vetoes_are_told() -> None:
     assert read("yes, if the fire is out ☠").vetoes == ("if", "fire", "☠")
+    assert read("ｙｅｓ").vetoes == ("unusual letters",)
 
 
 def test_an_unknown_language_is_refused() -> None:

@@ -259,8 +259,8 @@ FRENCH = AnswerWords(
 )  # fmt: skip
 
 SPANISH = AnswerWords(
-    yes="s|y|sí|si|sí sí|sí claro|claro|claro que sí|sí por favor|sí seguro|por supuesto|correcto|exacto|así es|es "
-        "correcto|afirmativo|sí señor",
+    yes="s|y|sí|si|sí sí|sí claro|claro que sí|sí por favor|sí seguro|por supuesto|correcto|exacto|así es|es correcto|"
+        "afirmativo|sí señor",
     no="n|no|no no|negativo|no gracias",
     passable="es seguro|sí es seguro|el humo es seguro|sin peligro|sí sin peligro|es inofensivo|sí es inofensivo|"
         "inofensivo|puedes pasar|sí puedes pasar|puede pasar|puedes atravesarlo|se puede atravesar|se puede pasar",
