@@ -39,6 +39,7 @@ bench: setup ## measure search and questions against their yardsticks, and write
 results: bench ## measure everything that docs/results.md states but the tables of strategies, and write it
 	@$(BIN)/python -m bench.missions --seeds 20 --keep
 	@$(BIN)/python -m bench.language
+	@for by in typed voice; do $(BIN)/python -m bench.answers --by $$by || exit 1; done
 
 table: setup ## fly Table 1, the boxes and the gaps as far as no record is there yet (hours), and write docs/results.md
 	@for part in table1 boxes gaps; do $(BIN)/python -m bench.$$part || exit 1; done

@@ -30,6 +30,7 @@ COMMANDS = (
     "bench gaps",
     "bench language",
     "bench report",
+    "understand answer",
 )
 HEAD = """# The command line
 

@@ -18,6 +18,7 @@ from mintpilot.core.errors import DeviceError, InputError, UnknownNameError
 from mintpilot.core.mission import Outcome
 from mintpilot.core.ports import Completion, LanguageModel
 from mintpilot.core.query import Order, Reply
+from mintpilot.core.reading import AnsweredBy
 from mintpilot.language.doubles import FunctionModel
 from mintpilot.mission_file.schema import LanguageSpec, MissionFile
 
@@ -176,29 +177,32 @@ def test_the_model_is_closed_in_the_end() -> None:
     ],
 )
 def test_short_answers_are_understood_in_the_operators_language(lang, text, reply) -> None:
-    assert Talk(lang=lang).understand(text, questions.SMOKE, 5.0).reply is reply
+    reading = Talk(lang=lang).understand(text, questions.SMOKE, 5.0)
+    assert reading.label == (reply.value if reply is not None else "again")
 
 
-@pytest.mark.parametrize("text", ["halt", "Stopp!", "stop", "come back", "zurück"])
-def test_orders_are_heard_in_both_languages(text: str) -> None:
-    meaning = Talk(lang="de").understand(text, questions.SMOKE, 5.0)
-    assert meaning.command in (Order.HOLD, Order.RETURN)
+@pytest.mark.parametrize("text", ["halt", "Stopp!", "stop", "komm zurück", "zurück"])
+def test_orders_are_heard(text: str) -> None:
+    reading = Talk(lang="de").understand(text, questions.SMOKE, 5.0)
+    assert reading.order in (Order.HOLD, Order.RETURN)
 
 
 def says(reading: str, opposite: str) -> FunctionModel:
     return FunctionModel(lambda p: f'{{"reading": "{opposite if "opposite" in p else reading}"}}')
 
 
-def test_a_model_reads_what_the_rules_do_not_know() -> None:
+def test_what_a_model_reads_is_read_back() -> None:
     strange = "the crimson fellow over yonder"
     read = Talk(model=says("yes", "no"), name="f").understand(strange, questions.BOX, 5.0)
-    assert (read.reply, read.by) == (Reply.YES, "model")
-    assert Talk().understand(strange, questions.BOX, 5.0).reply is None
+    assert (read.label, read.by) == ("read-back:yes", "model")
+    assert Talk().understand(strange, questions.BOX, 5.0).label == "again"
 
 
-def test_but_it_never_opens_a_region() -> None:
-    read = Talk(model=says("yes", "no"), name="f").understand("splendid air, my friend", questions.SMOKE, 5.0)
-    assert read.reply is not Reply.YES
+def test_the_way_the_words_came_and_the_read_back_are_passed_on() -> None:
+    talk = Talk()
+    assert talk.understand("yes", questions.SMOKE, 5.0, by=AnsweredBy.VOICE).label == "read-back:yes"
+    assert talk.understand("yes", questions.SMOKE, 5.0, pending=Reply.YES).label == "yes"
+    assert talk.understand("it is safe", questions.SMOKE, 5.0, guarded=()).label == "yes"
 
 
 SLANG = "There is a poor chap, the injured person; go to him"
@@ -227,5 +231,5 @@ def test_thinking_ahead_costs_one_proposal_only(monkeypatch: pytest.MonkeyPatch)
 
 
 def test_words_too_long_to_be_an_answer_are_none() -> None:
-    assert Talk().understand("y" * 4000, questions.SMOKE, 5.0).reply is None
-    assert Talk().understand("yes " * 200, questions.SMOKE, 5.0).reply is None
+    assert Talk().understand("y" * 4000, questions.SMOKE, 5.0).label == "again"
+    assert Talk().understand("yes " * 200, questions.SMOKE, 5.0).label == "again"

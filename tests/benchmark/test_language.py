@@ -62,7 +62,7 @@ def test_a_false_yes_and_a_no_for_a_yes_are_counted() -> None:
         AnswerCase(text="banana", question=smoke, reading="unsure"),
     ]
     counted = answer_all(cases, NoModel())
-    assert (counted.n, counted.understood, counted.false_yes, counted.no_for_yes) == (3, 1, 1, 1)
+    assert (counted.n, counted.understood, counted.false_guarded, counted.no_for_yes) == (3, 1, 1, 1)
 
 
 def test_a_sample_is_seeded_and_in_order() -> None:
@@ -85,7 +85,7 @@ def test_what_is_missing_is_told_and_the_rest_is_measured(scenes: Path) -> None:
     told: list[str] = []
     result = measure_language(LanguageOptions(models={"gone": _missing}, instructions=scenes), told.append)
     assert [way.name for way in result.ways] == ["template"]
-    assert result.ways[0].answered.false_yes == 0
+    assert result.ways[0].answered.false_guarded == 0
     assert result.left_out == ("gone: no model here: pip install something",)
     assert [caption for caption, _, _ in language_tables(result)] == [
         "Instructions",

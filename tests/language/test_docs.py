@@ -7,7 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from mintpilot.language import Reading, parse_instruction, understand_answer
+from mintpilot.core.query import Reply
+from mintpilot.language import parse_instruction, read_answer
 
 from . import questions
 
@@ -25,7 +26,8 @@ def test_the_examples_are_understood(text: str) -> None:
 
 
 def test_the_answers_are_read_as_the_page_says() -> None:
-    assert understand_answer("it is toxic", questions.SMOKE).reading is Reading.NO
-    more = understand_answer("Not the red one, the blue one", questions.BOX)
-    assert more.reading is Reading.NO
-    assert more.also is not None
+    assert read_answer("it is toxic", questions.SMOKE, guarded=(Reply.YES,)).label == "no"
+    both = (Reply.YES, Reply.NO)
+    more = read_answer("Not the red one, the blue one", questions.BOX, guarded=both)
+    assert more.label == "evidence:colour!=red,colour=blue"
+    assert read_answer("yes, perfectly safe, thanks", questions.SMOKE, guarded=(Reply.YES,)).label == "read-back:yes"

@@ -18,11 +18,12 @@ import pytest
 from pydantic import BaseModel
 
 from mintpilot.core.errors import DeviceError, InputError, MissingPartError
+from mintpilot.core.query import Reply
 from mintpilot.language import gguf
-from mintpilot.language.answers import Reading
+from mintpilot.language.answer_model import read_with_model
 from mintpilot.language.endpoint import EndpointModel, OutputMode
 from mintpilot.language.forms import AnswerReading, read_form
-from mintpilot.language.reading import parse_with_model, understand_with_model
+from mintpilot.language.reading import parse_with_model
 from mintpilot.language.wording import ModelWording
 
 from . import questions
@@ -278,8 +279,8 @@ def test_a_real_server_words_parses_proposes_and_reads(llama: str, mode: OutputM
     slang = "Hey, so the red box has got medicine that the injured person needs, would you be a dear"
     with suppress(InputError):
         assert parse_with_model(slang, real, timeout_s=60).subgoals
-    said = understand_with_model("my uncle never made it", questions.ROOM, real, timeout_s=60)
-    assert said.reading in Reading
+    heard = read_with_model("my uncle lies there", questions.ROOM, real, guarded=(Reply.NO,), timeout_s=60)
+    assert heard.label in ("again", "read-back:yes", "read-back:no")
     answer = real.complete("Is Paris in France? Answer yes or no.", schema=AnswerReading, timeout_s=60)
     assert read_form(answer.text, AnswerReading) is not None or mode is OutputMode.PROMPTED
     with pytest.raises(DeviceError, match="did not answer within"):

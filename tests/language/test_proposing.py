@@ -11,12 +11,11 @@ from hypothesis import strategies as st
 
 from mintpilot.core.errors import DeviceError, InputError
 from mintpilot.core.gap import PASSABLE, Assumptions, Joint
-from mintpilot.core.query import Combine, Reply
+from mintpilot.core.query import Combine
 from mintpilot.core.tree import Mint, Node, PlanClass
-from mintpilot.language.answers import Reading
 from mintpilot.language.doubles import FunctionModel, NoModel
 from mintpilot.language.proposing import propose_cuts
-from mintpilot.language.reading import parse_with_model, understand_with_model
+from mintpilot.language.reading import parse_with_model
 
 from . import questions
 
@@ -112,35 +111,6 @@ def test_whatever_a_model_proposes_is_sound_or_nothing(text: str) -> None:
 
 def _agreeing(prompt: str) -> str:
     return json.dumps({"reading": "no" if "the opposite" in prompt else "yes"})
-
-
-def test_a_model_that_agrees_with_itself_reads_what_the_rules_do_not() -> None:
-    strange = "the crimson fellow over yonder"
-    assert understand_with_model(strange, questions.BOX, NoModel()).reading is Reading.OTHER
-    understood = understand_with_model(strange, questions.BOX, FunctionModel(_agreeing))
-    assert (understood.reading, understood.by) == (Reading.YES, "model")
-
-
-def test_a_model_that_always_says_yes_is_not_believed() -> None:
-    liar = FunctionModel(lambda _: '{"reading": "yes"}')
-    assert understand_with_model("the crimson fellow", questions.BOX, liar).reading is Reading.OTHER
-
-
-def test_the_rules_come_first_and_orders_are_theirs() -> None:
-    liar = FunctionModel(_agreeing)
-    assert understand_with_model("no", questions.BOX, liar).reply is Reply.NO
-    assert understand_with_model("stop", questions.BOX, liar).reading is Reading.COMMAND
-    general = FunctionModel(lambda _: '{"reading": "command"}')
-    assert understand_with_model("the crimson fellow", questions.BOX, general).reading is Reading.OTHER
-
-
-@settings(deadline=None, max_examples=200)
-@given(st.text(max_size=60), HOSTILE)
-def test_no_model_can_open_a_region(answer: str, said: str) -> None:
-    plain = understand_with_model(answer, questions.SMOKE, NoModel())
-    for model in (FunctionModel(_agreeing), FunctionModel(lambda _: said)):
-        read = understand_with_model(answer, questions.SMOKE, model)
-        assert read.reading is not Reading.YES or plain.reading is Reading.YES
 
 
 SLANG = "There is a poor chap, the injured person; the medicine sits in the red box, he could use it"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
 
@@ -9,15 +10,16 @@ from mintpilot.assembly.guarded_model import GuardedModel
 from mintpilot.assembly.registry import load
 from mintpilot.core.geometry import Vec3
 from mintpilot.core.ports import LanguageModel, Proposer
-from mintpilot.core.query import YES_PART, Evidence, Meaning, Order, Query, Question
+from mintpilot.core.query import Order, Query, Question, Reply
+from mintpilot.core.reading import AnsweredBy, Reading, guarded_replies
 from mintpilot.core.task import Task
 from mintpilot.core.tree import Mint
 from mintpilot.elicitation.wording import word_question
-from mintpilot.language.answers import Reading, Understood
+from mintpilot.language.answer_model import READING_S, read_with_model
+from mintpilot.language.answers import order_in, read_answer
 from mintpilot.language.instruction import parse_instruction
 from mintpilot.language.proposing import propose_cuts
-from mintpilot.language.reading import READING_S, parse_with_model, understand_with_model
-from mintpilot.language.short_answers import understand_in
+from mintpilot.language.reading import parse_with_model
 from mintpilot.language.translating import ENGLISH, wording_for
 from mintpilot.language.wording import ModelWording, Wording
 from mintpilot.mission.rewording import Improve
@@ -25,13 +27,8 @@ from mintpilot.mission_file.schema import LanguageSpec
 
 TEMPLATE = "template"
 """Name of the model that is none."""
-LONGEST_ANSWER = 300
-"""Characters; what is longer is no answer to a yes/no question, whatever is in it."""
 SCREEN_S = 8.0
 """Better words for a screen may take this long: the first ones stand there meanwhile. Who speaks waits far shorter."""
-
-
-ORDER_WORDS = {order.value: order for order in Order} | {"stop": Order.HOLD, "go on": Order.CONTINUE}
 
 
 class Talk(AbstractContextManager["Talk"]):
@@ -79,21 +76,36 @@ class Talk(AbstractContextManager["Talk"]):
             return parse_instruction(text, home_m=home_m)
         return parse_with_model(text, self._model, home_m=home_m)
 
-    def understand(self, text: str, question: Question, timeout_s: float) -> Meaning:
-        """What a free answer means: by rules, and what they do not know with the model's help, in English only."""
-        if len(text) > LONGEST_ANSWER:
-            return Meaning(reply=None)
-        understood = understand_in(text, question, self.lang)
-        if understood.reading is Reading.OTHER and self._model is not None and self.lang == ENGLISH:
-            # The model is asked twice.
-            each_s = min(READING_S, timeout_s / 2)
-            understood = understand_with_model(text, question, self._model, timeout_s=each_s)
-        return _meaning(understood)
+    def understand(
+        self,
+        text: str,
+        question: Question,
+        timeout_s: float,
+        *,
+        by: AnsweredBy = AnsweredBy.TYPED,
+        guarded: Collection[Reply] | None = None,
+        pending: Reply | None = None,
+    ) -> Reading:
+        """What a free answer means: by rules, and what they do not know with the model's help, in English only.
+
+        See `mintpilot.core.ports.Understand`.
+        """
+        kept = guarded_replies(question) if guarded is None else guarded
+        if self._model is None or self.lang != ENGLISH:
+            return read_answer(text, question, guarded=kept, lang=self.lang, by=by, pending=pending)
+        return read_with_model(
+            text,
+            question,
+            self._model,
+            guarded=kept,
+            by=by,
+            pending=pending,
+            timeout_s=min(READING_S, timeout_s / 2),  # the model is asked twice
+        )
 
     def order_of(self, text: str) -> Order | None:
         """The order that typed words are where nothing is asked; None: they are none."""
-        words = text.strip().lower().rstrip(".! ")
-        return ORDER_WORDS.get(words)
+        return order_in(text, self.lang)
 
     def take_remarks(self) -> tuple[str, ...]:
         """What went wrong with the model since it was last called, in sentences; each is told once."""
@@ -143,12 +155,3 @@ def talk_for(spec: LanguageSpec, *, llm: str | LanguageModel | None = None, lang
     name = llm if llm is not None else spec.model
     made = load("language", name)
     return Talk(lang=spoken, model=None if name == TEMPLATE else made(), name=name)
-
-
-def _meaning(understood: Understood) -> Meaning:
-    if understood.reading is Reading.COMMAND:
-        return Meaning(reply=None, order=understood.command, by=understood.by)
-    if understood.reading is Reading.OTHER:
-        return Meaning(reply=None, by=understood.by)
-    also = () if understood.also is None else (Evidence(query=Query(literals=(understood.also,)), part=YES_PART),)
-    return Meaning(reply=understood.reply, also=also, by=understood.by)

@@ -31,3 +31,8 @@ def student(values: Sequence[float]) -> tuple[float, float] | None:
     spread = math.sqrt(math.fsum((v - mean) ** 2 for v in values) / (n - 1))
     half = float(stats.t.ppf(0.975, n - 1)) * spread / math.sqrt(n)
     return (mean - half, mean + half)
+
+
+def clopper_pearson_upper(successes: int, n: int) -> float:
+    """The exact one-sided 95 % upper bound of a share; 1 where nothing was tried."""
+    return 1.0 if successes >= n else float(stats.beta.ppf(0.95, successes + 1, n - successes))

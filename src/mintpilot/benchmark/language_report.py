@@ -124,10 +124,7 @@ def language_tables(result: LanguageResult) -> list[tuple[str, Sequence[str], li
     """Caption, header and rows of each table."""
     parsed = [(w.name, str(w.parsed.n), _share(w.parsed.as_expected, w.parsed.n), str(w.parsed.as_something_else))
               for w in result.ways]  # fmt: skip
-    answered = [
-        (w.name, str(w.answered.n), _share(w.answered.understood, w.answered.n), str(w.answered.false_yes),
-         str(w.answered.no_for_yes)) for w in result.ways
-    ]  # fmt: skip
+    answered = [_answered(w.name, w.answered) for w in result.ways]
     worded = [_worded(w.name, w.worded) for w in result.ways if w.worded is not None]
     speeds = [
         (w.name, "instructions and answers", *_speed(w.reading_speed)) for w in result.ways if w.worded is not None
@@ -139,7 +136,11 @@ def language_tables(result: LanguageResult) -> list[tuple[str, Sequence[str], li
     ]
     tables: list[tuple[str, Sequence[str], list[Sequence[str]]]] = [
         ("Instructions", ("way", "n", "as expected", "as something else"), [*parsed]),
-        ("Answers", ("way", "n", "understood", "false Yes", "No for Yes"), [*answered]),
+        (
+            "Answers",
+            ("way", "n", "understood at once", "after a read-back", "taken though not said", "No for Yes"),
+            [*answered],
+        ),
         ("Wordings", ("way", "n", "accepted", "in other words", "words, template", "words, model"), [*worded]),
         ("The model's time", ("way", "for", "calls", "p50", "p95", "tokens"), [*speeds]),
         ("Ambiguous instructions", ("way", "part", "n", "exact set", "over-ask", "over-step", "unsafe"), [*ambiguous]),
@@ -149,6 +150,11 @@ def language_tables(result: LanguageResult) -> list[tuple[str, Sequence[str], li
 
 def _share(part: int, whole: int) -> str:
     return f"{100 * part / max(1, whole):.1f} %"
+
+
+def _answered(name: str, answered: Answered) -> tuple[str, ...]:
+    shares = (_share(answered.understood, answered.n), _share(answered.after_read_back, answered.n))
+    return (name, str(answered.n), *shares, str(answered.false_guarded), str(answered.no_for_yes))
 
 
 def _worded(name: str, worded: Worded) -> tuple[str, ...]:

@@ -22,16 +22,17 @@ from mintpilot.core.gap import (
     target_id,
 )
 from mintpilot.core.ports import Completion, LanguageModel
-from mintpilot.core.query import Question, Saying, SayingKind
+from mintpilot.core.query import Question, Reply, Saying, SayingKind
+from mintpilot.core.reading import Reading, ReadingKind, guarded_replies, reply_of
 from mintpilot.elicitation.wording import word_question
-from mintpilot.language.answers import Reading
-from mintpilot.language.reading import parse_with_model, understand_with_model
+from mintpilot.language.answer_model import read_with_model
+from mintpilot.language.reading import parse_with_model
 from mintpilot.language.wording import ModelWording
 
 PATIENT_S = 60.0
 """Quality is measured without hurry; speed apart from it, seconds."""
 _HOME_M = (0.0, 0.0, 1.0)
-_AGAIN = {Reading.UNSURE, Reading.OTHER}
+_AGAIN = {"unsure", "other"}
 """Either way it is asked again."""
 
 
@@ -81,11 +82,12 @@ class Parsed:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Answered:
-    """Answers understood; a Yes that was not said; a Yes taken for a No."""
+    """Answers understood at once and after a read-back; guarded replies taken but not said; Yes taken for a No."""
 
     n: int
     understood: int
-    false_yes: int
+    after_read_back: int
+    false_guarded: int
     no_for_yes: int
 
 
@@ -118,13 +120,32 @@ def parse_all(model: LanguageModel) -> Parsed:
 
 def answer_all(cases: Sequence[AnswerCase], model: LanguageModel) -> Answered:
     """Answers read. Where a person was unsure or spoke of something else, both lead to asking again and count."""
-    right = false_yes = flipped = 0
+    right = confirmed = false_guarded = flipped = 0
     for case in cases:
-        got = understand_with_model(case.text, case.question, model, timeout_s=PATIENT_S).reading
+        guarded = guarded_replies(case.question)
+        reading = read_with_model(case.text, case.question, model, guarded=guarded, timeout_s=PATIENT_S)
+        got = _as_case(reading, case.question)
         right += got == case.reading or (got in _AGAIN and case.reading in _AGAIN)
-        false_yes += got is Reading.YES and case.reading != Reading.YES
-        flipped += got is Reading.NO and case.reading == Reading.YES
-    return Answered(n=len(cases), understood=right, false_yes=false_yes, no_for_yes=flipped)
+        confirmed += reading.label == f"read-back:{case.reading}"
+        is_plain = reading.kind in (ReadingKind.YES, ReadingKind.NO) and reading.reply in guarded
+        false_guarded += is_plain and got != case.reading
+        flipped += got == Reply.NO and case.reading == Reply.YES
+    return Answered(
+        n=len(cases),
+        understood=right,
+        after_read_back=right + confirmed,
+        false_guarded=false_guarded,
+        no_for_yes=flipped,
+    )
+
+
+def _as_case(reading: Reading, question: Question) -> str:
+    """The reading in the words of the cases; what needs a read-back is not understood yet."""
+    if reading.kind is ReadingKind.ORDER:
+        return "command"
+    if reading.kind in (ReadingKind.YES, ReadingKind.NO, ReadingKind.UNSURE, ReadingKind.EVIDENCE):
+        return reply_of(reading, question).value
+    return "other" if reading.kind is not ReadingKind.READ_BACK else reading.label
 
 
 def sampled(cases: Sequence[AnswerCase], most: int) -> list[AnswerCase]:

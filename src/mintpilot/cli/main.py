@@ -14,6 +14,7 @@ from rich.console import Console
 from mintpilot.cli.bench import bench
 from mintpilot.cli.exits import EPILOGUE, ExitCode, fail, guarded
 from mintpilot.cli.interrupts import listen
+from mintpilot.cli.understand_answer import answer
 
 app = App(
     name="mintpilot",
@@ -274,6 +275,23 @@ def replay(
 
 
 app.command(bench)
+
+understand = App(
+    name="understand",
+    help="Show what the drone understands, without flying anything.",
+    help_epilogue=EPILOGUE,
+    help_format="plaintext",
+    result_action="return_value",
+)
+understand.command(
+    answer,
+    help_epilogue=examples(
+        'mintpilot understand answer "it is safe"',
+        'mintpilot understand answer "not the red one" --kind target --json',
+        "mintpilot understand answer --file answers.txt --kind presence --by voice",
+    ),
+)
+app.command(understand)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -106,6 +106,14 @@ class Answered:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class MoreTimeWanted:
+    """An operator needs more time for the open question; granted once."""
+
+    time_s: float
+    question: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Ordered:
     """An operator gave an order. Orders count at any time."""
 
@@ -149,9 +157,10 @@ Input: TypeAlias = (
     | QuestionShown
     | QuestionReworded
     | Answered
+    | MoreTimeWanted
     | Ordered
     | LinkChanged
     | DeliberationEnded
 )
-OperatorInput: TypeAlias = QuestionShown | Answered | Ordered
+OperatorInput: TypeAlias = QuestionShown | Answered | MoreTimeWanted | Ordered
 """What operators bring."""

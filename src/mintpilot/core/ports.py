@@ -5,7 +5,7 @@ All are synchronous; an adapter that needs a thread or an event loop hides it an
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from dataclasses import dataclass
 from typing import Protocol, TypeAlias
 
@@ -17,7 +17,8 @@ from mintpilot.core.mission import AskingSettings, Verdict
 from mintpilot.core.motion import Motion
 from mintpilot.core.observation import Detection, Frame
 from mintpilot.core.plan import Plan, PlanningProblem
-from mintpilot.core.query import Evidence, Meaning, Query, Question
+from mintpilot.core.query import Evidence, Query, Question, Reply
+from mintpilot.core.reading import AnsweredBy, Reading
 from mintpilot.core.trajectory import VehicleState
 from mintpilot.core.tree import Certificate, Mint, ScoredQuery
 
@@ -220,8 +221,30 @@ class Operator(Protocol):
         ...
 
 
-Understand: TypeAlias = Callable[[str, Question, float], Meaning]
-"""Makes a reply of free words: the words, the question that they answer, and how long it may take, seconds."""
+class Understand(Protocol):
+    """Reads free words as an answer."""
+
+    def __call__(
+        self,
+        text: str,
+        question: Question,
+        timeout_s: float,
+        *,
+        by: AnsweredBy = AnsweredBy.TYPED,
+        guarded: Collection[Reply] | None = None,
+        pending: Reply | None = None,
+    ) -> Reading:
+        """What the words were read as, within about ``timeout_s`` seconds. Never raises for any text.
+
+        Args:
+            text: raw, as typed or heard; a key's name.
+            question: what they answer.
+            timeout_s: how long it may take, seconds.
+            by: how they came.
+            guarded: replies that would enlarge what the drone may do; None: judged from the query.
+            pending: the reply that was just read back, if any.
+        """
+        ...
 
 
 class TruthOracle(Protocol):

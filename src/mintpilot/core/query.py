@@ -193,6 +193,8 @@ class Question:
     """Of a choice: the consequence of each part, in order."""
     id: str = ""
     """Names the question in one mission; answers carry it. Empty until the question is put."""
+    read_back: Answer | None = None
+    """What was understood and takes effect only if it is confirmed now; None: the question itself is asked."""
 
 
 class Reply(StrEnum):
@@ -234,6 +236,17 @@ class Evidence:
             raise MissionError(f"part {self.part} of query '{self.query.id}', which has {self.query.part_count} parts")
 
 
+class Standing(StrEnum):
+    """How far an answer may be relied on where it takes caution away (method, section 12)."""
+
+    PLAIN = "plain"
+    """A key for that question, or a whole utterance of a closed list."""
+    UNCONFIRMED = "unconfirmed"
+    """It reads as such: where it takes caution away it is read back first."""
+    CONFIRMED = "confirmed"
+    """A plain yes to what was read back."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Answer:
     """An operator's reaction to one question [y]."""
@@ -248,6 +261,10 @@ class Answer:
     never counts as the explicit yes that opens a region."""
     understood_by: str = ""
     """Who made a reply of the words: ``rules``, ``model``, or empty where nobody had to."""
+    standing: Standing = Standing.PLAIN
+    """How far it may be relied on where it takes caution away."""
+    by: str = "key"
+    """How it came: ``key``, ``typed`` or ``voice``."""
     option: int | None = None
     """The part of a choice that was chosen, 0 to `Query.part_count` - 1; None for every other reply."""
 
@@ -268,20 +285,6 @@ def answer_for(query: Query, part: int, *, latency_s: float = 0.0, text: str = "
     return Answer(reply=Reply.YES if part == YES_PART else Reply.NO, latency_s=latency_s, text=text)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Meaning:
-    """What free words, typed or heard, mean as an answer to a question."""
-
-    reply: Reply | None
-    """None: they do not map to an answer, ask again."""
-    order: Order | None = None
-    """An order, which overrides ``reply``."""
-    also: tuple[Evidence, ...] = ()
-    """See `Answer.also`."""
-    by: str = "rules"
-    """Who understood them."""
-
-
 __all__ = [
     "MAX_PARTS",
     "NONE_OF_THESE",
@@ -292,7 +295,6 @@ __all__ = [
     "Domain",
     "Evidence",
     "Literal",
-    "Meaning",
     "Option",
     "Order",
     "Query",
@@ -300,6 +302,7 @@ __all__ = [
     "Reply",
     "Saying",
     "SayingKind",
+    "Standing",
     "answer_for",
     "choice",
 ]

@@ -31,6 +31,8 @@ class ScreenWords:
     """Answers words that were not understood; says what may be said."""
     given_up: str
     """The same the second time."""
+    read_back: str
+    """What was understood; ``{}``: the reply and what it does."""
     nothing_asked: str
     """Answers a line that is no order while nothing is asked."""
 
@@ -50,6 +52,7 @@ WORDS: Mapping[str, ScreenWords] = MappingProxyType(
             repeat="I do not understand. Please say yes, no or don't know (y, n, ?), what is the case, or an order: "
             "hold, return, abort.",
             given_up="I do not understand: I take it as 'don't know'.",
+            read_back="I understood {}: {}. Is that right? Yes or no: ",
             nothing_asked="Nothing is asked now. Orders: hold, continue, return, land, abort.",
         ),
         "de": ScreenWords(
@@ -65,6 +68,7 @@ WORDS: Mapping[str, ScreenWords] = MappingProxyType(
             repeat="Das habe ich nicht verstanden. Bitte: ja, nein, weiß nicht (?), oder ein Befehl: halt, zurück, "
             "abbrechen.",
             given_up="Das habe ich nicht verstanden: es gilt als „weiß nicht“.",
+            read_back="Ich habe verstanden: {}, {}. Stimmt das? Ja oder nein: ",
             nothing_asked="Gerade wird nichts gefragt. Befehle: halt, weiter, zurück, landen, abbrechen.",
         ),
         "fr": ScreenWords(
@@ -79,6 +83,7 @@ WORDS: Mapping[str, ScreenWords] = MappingProxyType(
             better="La même chose en d'autres mots :",
             repeat="Je n'ai pas compris. Dites : oui, non, je ne sais pas (?), ou un ordre : stop, reviens, annule.",
             given_up="Je n'ai pas compris : cela compte comme « je ne sais pas ».",
+            read_back="J'ai compris : {}, {}. C'est juste ? Oui ou non : ",
             nothing_asked="Rien n'est demandé. Ordres : stop, continue, reviens, atterris, annule.",
         ),
         "es": ScreenWords(
@@ -93,6 +98,7 @@ WORDS: Mapping[str, ScreenWords] = MappingProxyType(
             better="Lo mismo con otras palabras:",
             repeat="No he entendido. Diga: sí, no, no sé (?), o una orden: alto, vuelve, cancela.",
             given_up="No he entendido: cuenta como «no sé».",
+            read_back="He entendido: {}, {}. ¿Es correcto? Sí o no: ",
             nothing_asked="No se pregunta nada ahora. Órdenes: alto, sigue, vuelve, aterriza, cancela.",
         ),
     }

@@ -8,7 +8,7 @@ import termios
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
 from concurrent.futures import TimeoutError as NotYet
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Protocol
 
 from rich.console import Console, Group
@@ -17,7 +17,8 @@ from rich.text import Text
 from mintpilot.core.errors import DeviceError
 from mintpilot.core.inputs import Answered, OperatorInput, Ordered, QuestionShown
 from mintpilot.core.ports import Operator, Understand
-from mintpilot.core.query import Answer, Meaning, Order, Question, Reply
+from mintpilot.core.query import NO_PART, YES_PART, Answer, Evidence, Order, Query, Question, Reply, Standing
+from mintpilot.core.reading import AnsweredBy, Reading, ReadingKind, reply_of
 from mintpilot.interaction.screen_words import screen_words
 
 _LONGEST_LINE = 4096
@@ -87,7 +88,7 @@ class TerminalOperator(Operator):
         self._pending = b""
         self._ended = False
         self._turn: _Turn | None = None
-        self._understanding: tuple[str, str, Future[Meaning]] | None = None
+        self._understanding: tuple[str, str, Future[Reading]] | None = None
         self._pool = ThreadPoolExecutor(1, thread_name_prefix="mintpilot understanding")
 
     @property
@@ -100,8 +101,11 @@ class TerminalOperator(Operator):
         turn = self._turn
         if turn is not None and turn.question.id == question.id:
             turn.question = question
-            said = Text(self._words.better, style="bold cyan")
-            self._console.print(Group(Text(), said, *self._question_lines(question)))
+            if question.read_back is not None:
+                self._console.print(Text(self._read_back(question, question.read_back), style="bold"))
+            else:
+                said = Text(self._words.better, style="bold cyan")
+                self._console.print(Group(Text(), said, *self._question_lines(question)))
         else:
             self._drop_typed_ahead()
             self._turn = _Turn(question, patience_s)
@@ -140,8 +144,7 @@ class TerminalOperator(Operator):
             if self._turn is None:
                 events += self._order(line, time_s)
                 continue
-            left_s = max(0.0, self._turn.patience_s - (time_s - (self._turn.shown_s or time_s)))
-            future = self._pool.submit(self._understand, line, self._turn.question, left_s)
+            future = self._pool.submit(self._understood, line, self._turn, time_s)
             self._understanding = (self._turn.question.id, line, future)
             heard = self._heard(time_s, _AT_ONCE_S)
             events += heard
@@ -163,31 +166,59 @@ class TerminalOperator(Operator):
             return []
         name, line, future = self._understanding
         try:
-            meaning = future.result(timeout=wait_s)
+            reading = future.result(timeout=wait_s)
         except NotYet:
             return []
         self._understanding = None
-        if meaning.order is not None:
-            return [Ordered(time_s=time_s, order=meaning.order, operator=NAME, text=line)]
         turn = self._turn
+        if reading.order is not None:
+            return [Ordered(time_s=time_s, order=reading.order, operator=NAME, text=line)]
         if turn is None or turn.question.id != name:
-            turn = None
-        if meaning.reply is None and turn is not None and not turn.asked_again:
+            return [Answered(time_s=time_s, question=name, answer=_answer(reading, line, None, 0.0), operator=NAME)]
+        if reading.kind is ReadingKind.WAIT:
+            return [MoreTimeWanted(time_s=time_s, question=name)]
+        if reading.kind in (ReadingKind.REPEAT, ReadingKind.WHY, ReadingKind.WHERE, ReadingKind.SHOW):
+            self._console.print(Group(*self._question_lines(turn.question), *self._places(turn.question)))
+            self._prompt()
+            return []
+        waited_s = time_s - turn.shown_s if turn.shown_s is not None else 0.0
+        if reading.kind is ReadingKind.AGAIN:
+            return self._again(turn, line, time_s, waited_s)
+        answer = _answer(reading, line, turn.question, waited_s)
+        if answer.standing is not Standing.UNCONFIRMED:
+            self._turn = None
+        return [Answered(time_s=time_s, question=name, answer=answer, operator=NAME)]
+
+    def _again(self, turn: _Turn, line: str, time_s: float, waited_s: float) -> list[OperatorInput]:
+        """Asks once more; the second time the words count as "don't know"."""
+        turn.question = replace(turn.question, read_back=None)
+        if not turn.asked_again:
             turn.asked_again = True
             self._console.print(Text(self._words.repeat, style="yellow"))
             self._prompt()
             return []
-        if meaning.reply is None:
-            self._console.print(Text(self._words.given_up, style="yellow"))
-        answer = Answer(
-            reply=Reply.UNSURE if meaning.reply is None else meaning.reply,
-            latency_s=time_s - turn.shown_s if turn is not None and turn.shown_s is not None else 0.0,
-            text=line,
-            also=meaning.also,
-            understood_by=meaning.by,
+        self._console.print(Text(self._words.given_up, style="yellow"))
+        self._turn = None
+        answer = Answer(reply=Reply.UNSURE, latency_s=waited_s, text=line, by="typed", understood_by="rules")
+        return [Answered(time_s=time_s, question=turn.question.id, answer=answer, operator=NAME)]
+
+    def _understood(self, line: str, turn: _Turn, time_s: float) -> Reading:
+        left_s = max(0.0, turn.patience_s - (time_s - (turn.shown_s or time_s)))
+        read_back = turn.question.read_back
+        pending = read_back.reply if read_back is not None else None
+        return self._understand(line, turn.question, left_s, by=AnsweredBy.TYPED, pending=pending)
+
+    def _read_back(self, question: Question, answer: Answer) -> str:
+        means = question.yes_means if answer.reply is Reply.YES else question.no_means
+        said = self._words.yes if answer.reply is Reply.YES else self._words.no
+        return self._words.read_back.format(said.split()[-1], _printable(means))
+
+    def _places(self, question: Question) -> tuple[Text, ...]:
+        """Where the things are that the question is about, on the map."""
+        return tuple(
+            Text(f"  {_printable(gap.description)}: x {gap.position_m[0]:.1f} m, y {gap.position_m[1]:.1f} m")
+            for gap in question.gaps
         )
-        self._turn = None if turn is not None else self._turn
-        return [Answered(time_s=time_s, question=name, answer=answer, operator=NAME)]
 
     def _show(self, question: Question, patience_s: float) -> None:
         words = self._words
@@ -235,6 +266,33 @@ class TerminalOperator(Operator):
                 self._pending += b"\n"
         line, _, self._pending = self._pending.partition(b"\n")
         return line.decode("utf-8", errors="replace").strip()
+
+
+def _answer(reading: Reading, line: str, question: Question | None, waited_s: float) -> Answer:
+    """What a reading answers. Agreement that is not plain, and evidence, are read back where they take caution away."""
+    kind = reading.kind
+    plain = kind in (ReadingKind.YES, ReadingKind.NO, ReadingKind.UNSURE)
+    if kind is ReadingKind.EVIDENCE and question is not None:
+        reply = reply_of(reading, question)
+    else:
+        reply = reading.reply if reading.reply is not None else Reply.UNSURE
+    standing = Standing.PLAIN if plain else Standing.UNCONFIRMED
+    read_back = question.read_back if question is not None else None
+    if plain and read_back is not None and read_back.reply is reply:
+        standing = Standing.CONFIRMED
+    also = tuple(
+        Evidence(query=Query(literals=(literal,)), part=YES_PART if holds else NO_PART)
+        for literal, holds in reading.evidence
+    )
+    return Answer(
+        reply=reply,
+        latency_s=waited_s,
+        text=line,
+        also=also,
+        understood_by=reading.by,
+        standing=standing,
+        by="typed",
+    )
 
 
 def _printable(text: str) -> str:

@@ -1,9 +1,10 @@
 """Language: instruction in, question out, answer understood. Whole without a model; never deciding meaning."""
 
-from mintpilot.language.answers import Reading, Understood, understand_answer
+from mintpilot.language.answer_model import read_with_model
+from mintpilot.language.answers import read_answer
 from mintpilot.language.instruction import Capabilities, parse_instruction
 from mintpilot.language.proposing import Proposals, propose_cuts
-from mintpilot.language.reading import parse_with_model, understand_with_model
+from mintpilot.language.reading import parse_with_model
 from mintpilot.language.translating import wording_for
 from mintpilot.language.wording import ModelWording
 
@@ -11,12 +12,10 @@ __all__ = [
     "Capabilities",
     "ModelWording",
     "Proposals",
-    "Reading",
-    "Understood",
     "parse_instruction",
     "parse_with_model",
     "propose_cuts",
-    "understand_answer",
-    "understand_with_model",
+    "read_answer",
+    "read_with_model",
     "wording_for",
 ]

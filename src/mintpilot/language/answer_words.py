@@ -1,216 +1,317 @@
-"""What people say of their own mind: consent, refusal, doubt, delay. Tables only: class → phrases, split by bars."""
+"""The words by which answers are read, in four languages (method, section 12). Tables only.
+
+Entries are in lower case, without marks, separated by ``|``. `LISTED` entries count only as whole utterances; the
+others are regular expressions that are looked for among the words.
+"""
 
 from __future__ import annotations
 
-from mintpilot.language.answer_kinds import Kind
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
-ATTITUDES: dict[Kind, str] = {
-    Kind.YES: """
-        yes|ys|yeah|yea|yep|yup|yah|yeh|yess|yse|ya|ye|aye|yessir|yes sir|yas|yip|affirmative|affirm|correct|exactly|
-        precisely|true|ok|okey|okie dokie|alright|all right|roger|roger that|copy|copy that|confirmed|confirm|
-        i confirm|i can confirm|i can confirm it|uh huh|mhm|mm hm|mmhmm|y|10 4|ten four|agreed|i agree|that is right|
-        that is correct|that is true|you are right|you are correct|that is the one|that is it|that one|this one|
-        that is what i mean|that is what i meant|that is the box|that is the person|that is what i want|
-        that is what i wanted|you got it|you have got it|got it in one|bingo|spot on|right on|no doubt|without a doubt|
-        no doubt about it|no question|no question about it|beyond doubt|could not agree more|i do not see why not|
-        do not see why not|why not|no reason not to|no objection|no objections|why would it not be|you bet|you betcha|
-        bet|very much so|hell yes|hell yeah|heck yes|thumbs up|it is the case|it sure is|it certainly is|that is a yes|
-        say yes|i would say yes|answer is yes|the answer is yes|i said yes|you have clearance|clearance granted|
-        i give you permission|i permit it|wilco|will do|do not see any reason not to|see no reason not to|
-        can not see why not|by all means|granted|damn right|damn straight|too right|yes indeed|that is affirmative|
-        positive|fine by me|fine with me|works for me|good by me|good with me|ok by me|ok with me|that works|
-        sounds good|sounds good to me|sounds fine|looks good|looks good to me|looks fine|looks fine to me|very well|
-        that is fine|that is good|that is ok|no complaints|it is|it does|i do|that is|bang on|dead on|dead right|
-        mm hmm|could not be any other|could not be any other one|can not be any other|can not be any other one|
-        the very one|the very same|that is what i said
-    """,
-    Kind.BOOST: """
-        absolutely|definitely|certainly|surely|sure|sure thing|for sure|of course|totally|completely|indeed|obviously|
-        clearly|perfectly|entirely|100|100 percent|hundred percent|a hundred percent|one hundred percent|without fail|
-        undoubtedly|no two ways about it|i am sure|i am certain|i am positive|i am quite sure|i guarantee it|i promise|
-        trust me|believe me|guaranteed|genuinely|truly|quite sure|very sure|absolutely sure
-    """,
-    Kind.NO: """
-        nope|naw|nah|na|negative|nay|noo|nop|nada|nein|non|false|wrong|incorrect|n|uh uh|nuh uh|no way|no chance|
-        can not open it|can not open that|can not open the door|no sir|no thanks|no thank you|not a chance|not a hope|
-        not in a million years|not on your life|not on my watch|never ever|not now|not today|forget that|
-        forget that one|leave that one|skip that one|forget this one|no good|nix|negatory|of course not|
-        under no circumstances|by no means|hell no|heck no|no no|neither|neither one|neither of them|neither of those|
-        none of them|none of these|none of those|none|other one|the other|another one|a different one|different one|
-        some other one|another box|the other box|try another|i forbid it|i forbid that|forget it|forget about it|
-        permission denied|denied|red light|thumbs down|that is a no|say no|i would say no|the answer is no|
-        answer is no|i said no|out of the question|better not|rather not|best not|absolutely not|bad idea|a bad idea|
-        terrible idea|mistake|bad call|bad move|wrong one|the wrong one|not even close|as if not|i do not think so|
-        i do not believe so|do not think so|think not|i think not|i should think not|i do not reckon so|are you crazy|
-        are you mad|are you insane|are you nuts|are you kidding|you must be joking|you must be kidding|
-        have you lost your mind|are you out of your mind|are you serious|no siree|fat chance|over my dead body|
-        do not do it|please do not|do not do that|do not you dare|do not even think about it|not recommended|
-        not advisable|not advised|inadvisable|not worth it|not worth the risk|not a good idea|not such a good idea|
-        veto|i refuse|refused|abstain from it|hard no|no no no|not happening|yeah no|god no|dear god no|heavens no|
-        would not send
-    """,
-    Kind.AGREE: """
-        go ahead|go quickly|go slowly|go carefully|go gently|go fast|go for it|go on|go right ahead|proceed|do it|
-        do that|do so|please do|continue|carry on|keep going|go go|go go go|green light|you have permission|
-        permission granted|you have my permission|good to go|good|fine|no problem|no problem at all|no problems|
-        no issue|no issues|no worries|no bother|not a problem|no sweat|all good|all fine|all ok|you are good|
-        you are fine|you are ok|you are all right|you may|you can|you should|you may proceed|take it|pick it|
-        pick it up|grab it|get it|use it|be my guest|have at it|knock yourself out|full steam ahead|full speed ahead|
-        let us go|let us do it|let us do that|let us go for it|move ahead|push ahead|press on|push on|onward|onwards|
-        please go|just go|now go|go now|it is a go|that is a go|give it the green light|feel free|do not hesitate|
-        can do|approved|i approve|cleared hot|advance|forward|head on|move on|roll on|send it|you are good to go|
-        we are good to go|you can go|you may go|you should go
-    """,
-    Kind.MINIMISE: "just|only|merely|nothing but|nothing more than|simply|purely|mere",
-    Kind.NOT: """
-        not|never|without|knot|nto|ont|hardly|barely|nor|nothing like|anything but|far from|no longer|not any more|
-        no more
-    """,
-    Kind.KNOW: """
-        know|knows|tell|a clue|a clue about it|check|check it|check that|search|searched|searched it|look|say|remember|
-        recall|see|hear|judge|understand|certain|see it|see that|see anything|tell you|seen|looked|been|checked|heard|
-        decide|make out|make it out|guess|be sure|be certain|figure out|work out|verify|convinced|follow|catch that|
-        catch|get that|on site|near there|the expert|an expert|informed|aware|confident|answer|saw|saw it|answer that|
-        comment|positive about it|of knowing|of telling|to know|to tell|see a thing
-    """,
-    Kind.THINK: """
-        think|guessing|leaning|leaning towards|believe|suppose|reckon|imagine|feel like|expect|assume|fancy|figure|
-        would say|thinking|believe so|think so|suppose so|reckon so|guess so|i guess|i bet|my guess|hope|hope so|
-        i hope|hoping|hopefully|bet|wish|thought|believed|assumed|in my opinion|imo|would have thought|would think|
-        gut feeling|suspect|my hunch|hunch
-    """,
-    Kind.LIKELY: """
-        probably|want to say|would like to say|supposed|supposed to be|that i know of|that i know|i know of|
-        that i am aware of|potentially|likely|presumably|most likely|more than likely|very likely|quite likely|should|
-        ought|seems|seem|seemingly|looks|looks like|look|looked like|looked|appears|appear|apparently|supposedly|
-        allegedly|reportedly|pretty sure|fairly sure|almost sure|mostly sure|reasonably sure|fairly certain|
-        pretty certain|almost certain|almost certainly|pretty much|more or less|kind of|kinda|sort of|sorta|
-        as far as i know|afaik|as far as i can tell|as far as i can see|to my knowledge|last i heard|last i knew|
-        last i checked|from what i|i was told|they told me|he told me|she told me|they said|he said|she said|
-        somebody said|someone said|people say|they say|he says|she says|i heard that|i was informed|rumour|rumor|could|
-        percent|odds|chances are|chance|tends to|usually|normally|generally|often|sometimes|mainly|in theory|
-        theoretically|in principle|on paper|would be|somebody told me|someone told me|says|claims|claim|said it|
-        according to|if i remember|from memory|ish|i would
-    """,
-    Kind.UNLIKELY: "unlikely|doubt|doubtful|doubts|i doubt|i doubt it|i doubt that|hardly any|very unlikely",
-    Kind.SOFT: """
-        halfway|half way|ajar|unlocked|fairly|pretty|relatively|reasonably|mostly|almost|nearly|quite|rather|somewhat|
-        partly|partially|half|a bit|a little|slightly|safe enough|enough|particularly|especially|exactly|moderately|
-        fully|less|more|not so
-    """,
-    Kind.VERY: "very|really|extremely|highly|super|so very|incredibly|terribly|damn|bloody|way|far|much|properly",
-    Kind.UNSURE: """
-        unconfirmed|unable|not able|
-        metre|metres|meter|meters|width|foot|feet|wing|open it|open that|open the door|open them|how would i know|
-        how should i know|who am i to say|how am i supposed to know|the faintest|foggiest|do not get it|did not get it|
-        do not get that|did not get that|do not understand|am not there|am not here|was not there|are not there|
-        were not there|am not near|am not in|am not at|not on site|not at the site|not nearby|maybe|perhaps|possibly|
-        might|might be|could be|may be|unsure|uncertain|unclear|no idea|no clue|not a clue|not the foggiest|
-        no information|no data|no news|no signal|no memory|no opinion|no comment|no way of knowing|no way of telling|
-        no way to know|no way to tell|no means of knowing|no view|who knows|who can tell|who can say|god knows|
-        heaven knows|lord knows|goodness knows|search me|beats me|you tell me|your guess|your guess is as good as mine|
-        your choice|your call|your decision|up to you|you decide|you choose|you pick|you are the expert|it depends|
-        depends|that depends|depending|yes and no|yes or no|fifty fifty|50 50|half and half|either|either one|
-        either way|toss up|coin toss|a toss up|iffy|hard to say|hard to tell|hard to know|hard to see|hard to judge|
-        hard to decide|difficult to say|difficult to tell|difficult to know|tough to say|tough call|tough one|hard one|
-        tricky|tricky one|impossible to say|impossible to tell|impossible to know|good question|ask me later|
-        ask me again|ask again|ask somebody else|ask someone else|ask later|ask someone|ask somebody|ask them|ask him|
-        not my call|not my decision|not my job|do not ask me|do not know|do not care|do not mind|not care|not matter|
-        makes no difference|no difference|whatever|whichever|whatever you like|whatever you think|suit yourself|
-        as you like|as you wish|rain check|if you like|if you want|if you wish|if you must|so so|borderline|debatable|
-        questionable|mixed|undecided|torn|on the fence|blank|forgot|forgotten|i forget|my mind is blank|skip|
-        skip that question|next question|need to check|have to check|must check|better check|check first|
-        check it first|we should check|go and see|go and look|have a look|take a look|go look|see for yourself|
-        closer look|find out|check yourself|unknown|no telling|there is no telling|never mind|nevermind|blind here|
-        lost track|confusing|confused|i am confused|missing information|negotiable|not necessarily|not that i know|
-        not that i know of|not that i am aware|not to my knowledge|not as far as i know|not sure|not so sure|
-        not certain|not clear to me|only just|just about|just fit|just barely|under the impression|inconclusive|
-        stumped|clueless|wonder|pardon|huh|eh|come again|say again|say that again|say it again|say it once more|repeat|
-        repeat that|please repeat|repeat the question|what was that|which one|did not catch that|once more|
-        again please|one more time|excuse me|i beg your pardon|beg your pardon|speak up|louder|breaking up|
-        you are breaking up|say what|sorry what|slow down|rephrase|in other words|i am lost|no reception|bad line|
-        still checking|ambiguous|not make it out|leave it to you|leave that to you|leave it up to you|you should decide
-    """,
-    Kind.RISK: """
-        risk it|risk that|chance it|take a chance|take the risk|take that risk|take the chance|take your chances|
-        try it|try|give it a try|give it a go|give it a shot|worth a try|worth a shot|you can try|attempt it|gamble|
-        gamble on it
-    """,
-    Kind.ELSEWHERE: """
-        i am here|we are here|and you|i am listening|i heard you|i hear you|yes hello|speaking|we called|we have called|
-        go ahead of|no problem with the|next|next room|the other room|next door|other room|upstairs|downstairs|
-        left one|right one|on the left|on the right|to the left|to the right|the left|opposite|adjacent|neighbouring|
-        another room|the other door|other door|second one|first one|right
-    """,
-    Kind.STALL: """
-        wait|wait a moment|wait a second|wait a minute|wait a sec|wait a bit|hold on|hang on|one moment|one second|
-        one sec|one minute|just a moment|just a second|just a minute|just a sec|a moment|a second|a minute|sec|moment|
-        give me a second|give me a moment|give me a minute|give me a sec|get me a minute|stand by|standby|bear with me|
-        let me check|let me see|let me think|let me look|let me ask|let me find out|hold up|two seconds|two minutes|
-        let me have a look|let me take a look|i will check|i will ask|i am checking|checking|i need to think|
-        thinking about it|need a minute|need a moment|need a second|need time|i will get back to you|
-        i will come back to you|get back to you|call you back|not ready|later|in a minute|in a moment|in a second|
-        on it|looking into it|hmm
-    """,
-    Kind.CONDITION: """
-        if|unless|until|till|only if|only when|only for|only after|but|except|apart from|other than|as long as|
-        provided|providing|when|once|after|before|though|although|however|assuming|while|whilst|in case|so long as|
-        on condition|given that|whether|otherwise|or|or else|but only|except for|save for|as soon as|supposing|
-        let alone|instead of
-    """,
-    Kind.PAST: """
-        ago|a minute ago|a moment ago|a second ago|yesterday|last week|last month|last time|last night|earlier|
-        this morning|used to be|used to|back then|previously|formerly|once was|last year|before that|at the time|
-        when i left|had been|the other day|was|were
-    """,
-    Kind.MOCK: """
-        shut up|you stupid|stupid drone|go away|leave me alone|yeah right|oh sure|oh yeah sure|right right|as if|
-        in your dreams|dream on|pigs|pigs fly|death wish|genius|einstein|sherlock|brilliant|fantastic idea|great idea|
-        wonderful idea|lovely idea|what could go wrong|what could possibly go wrong|good luck|good luck with that|
-        say goodbye|kidding|just kidding|joking|just joking|joke|funny|very funny|haha|ha ha|hahaha|lol|lmao|rofl|
-        lmfao|lose|lose another|sure jan|bonfire|barbecue|barbeque|bbq|roast|roasted|grill|kamikaze|hero|my ass|
-        never come back|never return|my arse|
-        said no one ever|said nobody ever|clear as mud|safe as houses|dandy|what a surprise|whoopee|
-        because that always works|like a hole|famous last words|psych|sike|ironic|sarcasm|yeah nah|nah yeah|oh great|
-        oh wonderful|oh perfect|oh brilliant|oh fantastic|just great|just perfect|just wonderful|just what we need|
-        burn the drone|queen|king|pope|santa|father christmas|easter bunny|tooth fairy|napoleon|superman|fried|crispy|
-        cremate|cremated|funeral|coffin|insurance|warranty|picnic
-    """,
-    Kind.DENIED: "nosuch",
-    Kind.SUBJECT: "it|that|this|there|you|one|ones|these|those",
-    Kind.PLACE: """
-        the smoke|the way|the path|the area|the room|the door|smoke|cloud|room|door|area|path|passage|route|gate|
-        corridor|hallway|doorway|place|air|stuff|thing
-    """,
-    Kind.PRONOUN: """
-        i|we|he|she|they|who|my|our|his|where we|where i|
-        where they|firemen|firefighters|fireman|caretaker|janitor|foreman|crew
-    """,
-    Kind.VERB: """
-        is|are|was|were|has|have|had|does|did|do|can|will|would|should|be|been|being|am|may|must|shall|got|has got
-    """,
-    Kind.NOISE: """
-        sorry|
-        oh no|oh god|oh my god|yet|at all|no other way|no other choice|no choice|please|thank you|thanks|sir|madam|
-        ma'am|mam|drone|well|oh|um|uh|er|erm|uhm|ah|hm|mm|ahem|so|then|now|really|careful|carefully|be careful|slow|
-        slowly|gently|still|well then|and|the|a|an|to|me|my|for|of|go|take|mean|i mean|with|from|by|want|need|needed|
-        at|all|hey|man|mate|buddy|dude|pal|friend|say|said|say so|too|also|on|as|your|his|her|its|our|their|them|us|
-        him|here|right now|at the moment|currently|already|again|both|look|looks like|you know|you see|like|basically|
-        actually|honestly|frankly|literally|seriously|in fact|to be honest|tbh|obviously|anyway|box|i said|i told you|
-        told you|watch out|mind|hurry|hurry up|quick|quickly|fast|straight|through|over|up|down|along|back|around|away|
-        off|into|out there|time|day|bit|little|big|any|anything|some more|more|much|because|since|checked|i checked|
-        we checked|tested|been tested|verified|it has been|done|two|three|four|five|six|seven|eight|nine|ten|2|3|4|5|6|
-        number|minutes|minute|hours|hour|today|ready|make|made|keep|let|let us|give|put|get|come|came|gone off|fly|
-        flying|flew|drive|head|move|went|went in|walk|walked|walked through|went through|flew through|came through|
-        pass through it|just been|end|else|even|next to|about|just now|not only|not just|fire is out|fire chief|
-        fire brigade|fire department|fire service|fire officer|fire truck|fire marshal|fire alarm|fire door|fire exit|
-        fire escape|fire extinguisher|fire crew|fire team|the fire team|fire is under control|put out|extinguished|
-        no need|which|worry|do not worry|not to worry|not worry|hello|hi|ok so|such|at least|in|night|ma|watch|closer|
-        nearer|near|right behind|right there|right here|right next to|right in front of|and no other|something awful|
-        something terrible|something rotten|propped|wedged|kicked|forced|took|taken|easy|easily|ya|myself|meself|
-        ourselves|yourself|whole|nothing else|nothing more|
-        clear to me|clear on that|gap|big hole|huge hole|large hole|gaping hole|just a hole|standing|sitting|waiting|
-        right across|fallen|love|dear|darling|chief|boss|guv
-    """,
-}
-"""Class → phrases."""
+from mintpilot.core.query import Order
+from mintpilot.core.reading import ReadingKind
+
+LISTED = 60
+"""Most closed utterances that a language may have for replies, and most for orders."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AnswerWords:
+    """One language; ``yes`` to ``confirm``, ``orders`` and ``back`` are closed lists."""
+
+    yes: str
+    no: str
+    passable: str
+    """The region may be crossed."""
+    absent: str
+    """Nobody is there."""
+    confirm: str
+    """Confirms a read-back, typed or by voice."""
+    keys: Mapping[str, str] = field(default_factory=dict)
+    """Letters of this language beside y, n, u and ?."""
+    seems_passable: str
+    """Agrees that the region may be crossed, good for a read-back only."""
+    seems_absent: str
+    courtesies: str
+    """Say nothing; also taken off both ends of orders and questions back."""
+    fillers: str
+    """May stand in an agreement beside the words of the closed lists and of the question."""
+    nay: str
+    """Veto of a Yes."""
+    aye: str
+    """Veto of a No."""
+    denial: str
+    """Veto, as the five after it: turns or takes back what is said beside it."""
+    danger: str
+    doubt: str
+    condition: str
+    limits: str
+    """Another time, a part, another place, or what somebody else said."""
+    asks: str
+    blocked: str
+    """Read loosely: the region must not be entered."""
+    not_blocked: str
+    """Cancels it: a danger that is denied, a No that refuses nothing."""
+    present: str
+    """Read loosely: somebody is there."""
+    unsure: str
+    """Read loosely: the person does not know."""
+    orders: Mapping[Order, str]
+    back: Mapping[ReadingKind, str]
+    """Questions back, and asking for time."""
+    articles: str
+    things: str
+    """Stand for a thing's name: ``one``."""
+    states: str
+    """Stand before an attribute: ``it is``, ``I mean``."""
+    negates: str
+    """Denies the attribute after it."""
+    attributes: Mapping[str, str]
+    """Other words for English attribute values."""
+
+
+ENGLISH = AnswerWords(
+    yes="y|yes|yeah|yep|yup|yes please|yes it is|affirmative|correct|that's right|that is right|that's correct|that is "
+        "correct|absolutely|definitely|certainly|of course|sure",
+    no="n|no|nope|negative|no sir",
+    passable="safe|it is safe|it's safe|yes it is safe|yes it's safe|yes safe|perfectly safe|harmless|it is harmless|"
+        "it's harmless|it is safe to fly through|it's safe to fly through|you can fly through it|the smoke is safe",
+    absent="nobody|no one|nobody is inside|nobody is in there|no one is inside|no one is in there|there is nobody "
+        "inside|there's nobody inside|there is nobody in there|there is no one inside|there's no one inside|empty|it "
+        "is empty|it's empty|the room is empty|no it is empty|no it's empty|no nobody",
+    confirm="confirm|confirmed|i confirm",
+    seems_passable="safe|harmless|it is (?:okay|ok|fine|clear)|it's (?:okay|ok|fine|clear)|(?:fly|go|pass) through",
+    seems_absent="nobody|no ?one|empty|no person|no(?=[,.;!]|$)",
+    courtesies="please|thanks|thank you|sir|madam|drone|well|uh|um|er|hm|okay|ok|alright|all right|hello|hi|hey|bye",
+    fillers="it is it's that that's this there there's the a an one in inside through to you can may fly go pass "
+        "perfectly completely totally absolutely really indeed definitely all good fine clear",
+    nay="no|nope|nah|negative|none|nobody|no ?one|neither|nor|empty|unsafe",
+    aye="y|yes|yeah|yep|yup|sure|affirmative|correct|somebody|someone|person inside|people",
+    denial=r"not|never|\w+n't|dont|isnt|cant|wont|cannot|without|wrong|false|mistake|incorrect|refuse\w*|forget|"
+        r"forbid\w*|kidding|jok\w+|sorry|opposite|unless|hardly|lied?|yeah,? right|take (?:it|that) back",
+    danger=r"toxic|poison\w*|danger\w*|hazard\w*|risk\w*|burn\w*|fire|flames?|hot|acid|chlorine|gas|kill\w*|dead\w*|"
+        r"die[ds]?|lethal|hurts?|injur\w*|explo\w*|careful\w*|caution|beware|watch|mind|avoid|away|around|stay|keep|"
+        r"unsafe|mask",
+    doubt=r"maybe|perhaps|probabl[ey]|possibl[ey]|likely|guess|think|believe|suppose\w*|hope\w*|seem\w*|looks?|might|"
+        r"could|should|would|almost|nearly|fairly|mostly|more or less|kind of|sort of|theory|principle|unsure|doubt\w*|"
+        r"assum\w*|ought|pretty|know|normally|usually|generally|reckon|feel|idea|ish",
+    condition=r"if|once|provided|depend\w*|as long as|except\w*|apart|but|only|until|till|while|when|then|just",
+    limits=r"was|were|used|will|soon|later|yet|tomorrow|yesterday|today|tonight|morning|noon|ago|still|already|any "
+        r"?more|earlier|minutes?|hours?|seconds?|before|after|last|wait|moment|sometimes|often|always|not now|later on|"
+        r"going to|some|part\w*|half|side|edges?|most|others?|few|upper|lower|above|below|middle|bits?|either|both|"
+        r"another|rest|far|far enough|said|says?|heard|hear|told|tells?|apparently|supposedly|allegedly|according|"
+        r"manual|log|they|he|she|thinks|claims?",
+    asks="what|why|who|where|how|which|(?:^(?:is|are|am|do|does|did|can|could|may|will|would|should|has)(?= .))",
+    blocked=r"(?:not|isn't|isnt|aren't|ain't|never|hardly) (?:\w+ ){0,2}(?:safe|okay|ok|harmless|clear|passable|wise|a "
+        r"good idea)|unsafe|no way|never|toxic|poison\w*|danger\w*|hazardous|chlorine|acid|burning|burns?|flames?|"
+        r"explo\w*|lethal|deadly|kills?|(?:stay|keep) (?:out|away|clear|off)|avoid|(?<!i )(?<!we )(?<!they )(?:do not|"
+        r"don't|dont)(?! (?:know|worry|think|care|mind|stop))|(?:must not|mustn't|cannot|can't|should not|"
+        r"shouldn't)(?! (?:know|tell|say|see))|(?:rather|better|would|prefer) not|rather you didn't|wouldn't|(?:go|fly|"
+        r"goes) (?:a)?round(?: it)?|absolutely not|forbidden",
+    not_blocked=r"(?:not|\w+n't|no|non|without|nothing|never|hardly) (?:\w+ ){0,2}(?:unsafe|toxic|poison\w*|danger\w*|"
+        r"hazard\w*|acid|burning|flames?)|no (?:problem|worries|objections?|issues?|doubt|matter|risk|reason)",
+    present=r"some(?:body|one)|(?:a|an|my|one|two|three|four|five|six|several|some|many|\d+) (?:\w+ )?(?:man|woman|men|"
+        r"women|person|people|child|children|kids?|workers?|colleagues?|victims?|guards?|guys?)|(?:he|she|they)(?:'s|"
+        r"'re| is| are)?(?: still)? (?:in|inside|trapped|stuck)|(?:not|isn't|isnt) empty|trapped|occupied|unaccounted|"
+        r"(?:nobody|no one),? (?:but|except|besides|came|made|got|escaped|has (?:left|come))|(?:has not|hasn't|have "
+        r"not|haven't) (?:\w+ )?(?:come|left|got)",
+    unsure=r"(?:do not|don't|dont|wouldn't) know|dunno|no idea|no clue|not sure|unsure|(?:can't|cannot|couldn't|can "
+        r"not) (?:\w+ )?(?:tell|say|see)|hard to (?:say|tell)|no way of knowing|who knows|beats me|not certain",
+    orders={
+        Order.HOLD: "stop|halt|hold|hold position|hold it|freeze|pause|hover|stay|stay there|stop there|stop now",
+        Order.CONTINUE: "continue|carry on|resume|continue the mission|resume the mission",
+        Order.RETURN: "return|come back|come home|return home|return to base|go home|fly back|fly home|rtl|come back "
+            "now",
+        Order.ABORT: "abort|abort mission|abort the mission|cancel|cancel the mission|end the mission|call it off",
+        Order.LAND: "land|land now|land here|land there|land immediately|put it down|set it down|touch down",
+    },
+    back={
+        ReadingKind.WAIT: "wait|wait a moment|wait a minute|wait a second|one moment|just a moment|hang on|hold on|"
+            "stand by|standby|one second|just a second|just a sec|one minute|give me a minute|give me a moment|moment",
+        ReadingKind.WHERE: "where|where is it|where is that|where's that|where exactly|where are you|which one|which",
+        ReadingKind.SHOW: "show|show me|show it|show me that|show me a picture|picture|can i see it|let me see",
+        ReadingKind.WHY: "why|why do you ask|why do you want to know|why do you need to know|what for",
+        ReadingKind.REPEAT: "repeat|say again|say that again|pardon|come again|again|repeat the question|what",
+    },
+    articles="the|a|an|that|this", things="one|thing", states="it is|it's|i mean|that is|that's", negates="not|isn't",
+    attributes={"big": "large", "bigger": "large", "little": "small", "smaller": "small", "gray": "grey"},
+)  # fmt: skip
+
+GERMAN = AnswerWords(
+    yes="j|y|ja|jawohl|jap|ja genau|genau|richtig|stimmt|das stimmt|ja das stimmt|ja bitte|ja ganz sicher|ja sicher|"
+        "auf jeden fall|selbstverständlich|natürlich|korrekt|bejahe",
+    no="n|nein|nee|nö|negativ|nein danke",
+    passable="sicher|es ist sicher|ja ist sicher|ja es ist sicher|er ist sicher|der rauch ist sicher|ungefährlich|es "
+        "ist ungefährlich|er ist ungefährlich|harmlos|er ist harmlos|der rauch ist harmlos|flieg durch|flieg hindurch|"
+        "ja flieg durch|du kannst durchfliegen|ja du kannst durchfliegen",
+    absent="niemand|keiner|niemand drin|keiner drin|niemand ist drin|keiner ist drin|da ist niemand|da ist keiner|da "
+        "ist niemand drin|es ist niemand drin|leer|er ist leer|der raum ist leer|nein niemand|nein leer",
+    confirm="bestätigt|bestätige|ich bestätige|bestätigen",
+    keys={"j": "yes"},
+    seems_passable="sicher|ungefährlich|harmlos|durchfliegen|(?:flieg|fliege) (?:durch|hindurch)|in ordnung",
+    seems_absent="niemand|keiner|leer|nein(?=[,.;!]|$)",
+    courtesies="bitte|danke|drohne|äh|ähm|hm|also|na|okay|ok|gut|hallo|tschüss|alles klar|ende|so",
+    fillers="es ist er das da der die ganz völlig absolut wirklich klar kannst du durch hindurch fliegen flieg drin im "
+        "in",
+    nay="nein|nee|nö|ne|negativ|niemand|keine?[rsnm]?|leer",
+    aye="ja|jawohl|doch|jemand|genau|richtig|stimmt|leute|person ist",
+    denial="nicht|nie|niemals|ohne|falsch|irrtum|quatsch|scherz|spaß|witz|sorry|gegenteil|kaum|vergiss|verboten|weder",
+    danger=r"giftig\w*|toxisch\w*|gefahr|gefährlich\w*|riskant|risiko|brenn\w*|feuer|flammen?|heiß|säure|chlor|gas|tot|"
+        r"tödlich|explo\w*|vorsicht\w*|achtung|pass auf|meide\w*|weg|außen|herum|maske",
+    doubt=r"vielleicht|wahrscheinlich|vermutlich|möglich\w*|eventuell|glaube?|denke?|hoff\w+|scheint|wohl|könnte|"
+        r"sollte|müsste|würde|dürfte|fast|ziemlich|eher|eigentlich|unklar|unsicher|zweifel\w*|normalerweise|jein|oder",
+    condition="wenn|falls|sobald|sofern|solange|drauf an|außer|bis|nur|aber|während|dann|notfall|nachdem",
+    limits=r"war|waren|wird|werden|bald|später|noch|morgen|gestern|heute|vorher|früher|minuten?|stunden?|vor|nach|"
+        r"schon|mehr|immer|warte|moment|teil\w*|halb|hälfte|seite|rand|meiste\w*|andere\w*|oben|unten|über|mitte|etwas|"
+        r"links|rechts|sagt\w*|gesagt|gehört|angeblich|laut|heißt|meint|soll|liste",
+    asks=r"was|warum|wieso|wer|wo|wie|welche\w*|ob|(?:^(?:ist|sind|bin|kann|darf|soll|hast|bist|haben|wird)(?= .))",
+    blocked=r"(?:nicht|nie|keineswegs|kein) (?:\w+ ){0,2}(?:sicher|harmlos|ungefährlich|ok|okay|in ordnung)|sicher "
+        r"nicht|giftig\w*|toxisch\w*|gefährlich\w*|gefahr|lebensgefahr|brennt|flammen|chlor|säure|tödlich|explo\w*|"
+        r"bloß nicht|lieber nicht|besser nicht|auf keinen fall|(?:flieg|geh|fahr)e? (?:\w+ ){0,2}nicht|nicht "
+        r"(?:durch\w*|rein\w*|hinein\w*)|(?:außen|drum)? ?herum|meide\w*|bleib weg|fernhalten|verboten",
+    not_blocked=r"(?:nicht|nie|kein\w*|ohne|weder) (?:\w+ ){0,2}(?:giftig\w*|toxisch\w*|gefährlich\w*|gefahr|flammen)|"
+        r"kein problem|keine sorge",
+    present=r"jemand\w*|(?:ein|eine|einen|mein|meine|zwei|drei|vier|fünf|mehrere|einige|\d+) (?:\w+ )?(?:mann|frau|"
+        r"leute|person|personen|menschen?|kinder|kind|kollegen?|kollegin|opfer|männer|frauen)|(?:er|sie|es) ist "
+        r"(?:noch )?(?:drin|drinnen)|nicht leer|eingeschlossen|eingesperrt|(?:niemand|keiner),? (?:außer|bis auf|kam|"
+        r"ist (?:\w+)?(?:heraus|raus)\w*|hat)|noch (?:nicht draußen|drin)|fehlt noch",
+    unsure="weiß (?:ich |es |das )*(?:leider |auch )?nicht|weiss (?:ich |es |das )*(?:leider )?nicht|keine ahnung|"
+        "nicht sicher(?= *$)|schwer zu sagen|kann (?:ich )?(?:es |das )?nicht (?:sagen|sehen|erkennen)|überfragt|"
+        "unklar|bin (?:mir )?nicht sicher",
+    orders={
+        Order.HOLD: "stopp|stop|halt|anhalten|halt an|bleib stehen|stehen bleiben|bleib da|warte dort|pause",
+        Order.CONTINUE: "weiter|weitermachen|mach weiter|flieg weiter|fortsetzen|mission fortsetzen",
+        Order.RETURN: "zurück|komm zurück|zurückkommen|kehr um|umkehren|komm heim|nach hause|flieg zurück",
+        Order.ABORT: "abbrechen|abbruch|brich ab|mission abbrechen|sofort abbrechen|abbruch der mission|aufhören",
+        Order.LAND: "landen|lande|lande jetzt|lande sofort|lande hier|lande dort|sofort landen|jetzt landen",
+    },
+    back={
+        ReadingKind.WAIT: "warte|warte mal|warte kurz|warten|moment|moment mal|einen moment|sekunde|eine minute",
+        ReadingKind.WHERE: "wo|wo ist das|wo genau|wo bist du|welche|welcher|welches|wo denn|wo meinst du",
+        ReadingKind.SHOW: "zeig|zeig mir|zeig mal|zeigen|zeig es mir|zeig mir ein bild|bild|lass sehen",
+        ReadingKind.WHY: "warum|wieso|weshalb|wozu|warum fragst du|wieso fragst du",
+        ReadingKind.REPEAT: "wie bitte|noch mal|nochmal|noch einmal|wiederhole|wiederholen|was war die frage|was|wie",
+    },
+    articles="der|die|das|den|dem|eine?n?|diese[rs]?", things="ding|teil",
+    states="es ist|ich meine|das ist|sie ist|er ist", negates="nicht",
+    attributes={"weiss": "white"},
+)  # fmt: skip
+
+FRENCH = AnswerWords(
+    yes="o|y|oui|oui oui|ouais|oui c'est ça|c'est ça|exact|exactement|c'est exact|tout à fait|oui bien sûr|bien sûr|"
+        "affirmatif|absolument|oui certain|certainement|oui s'il vous plaît|oui s'il te plaît|correct",
+    no="n|non|non non|négatif|non merci",
+    passable="sans danger|c'est sans danger|oui c'est sans danger|oui sans danger|c'est sûr|oui c'est sûr|la fumée est "
+        "sans danger|elle est sans danger|inoffensive|elle est inoffensive|tu peux passer|oui tu peux passer|tu peux "
+        "traverser|vous pouvez passer|on peut traverser",
+    absent="personne|il n'y a personne|non il n'y a personne|y a personne|personne dedans|personne n'est dedans|il n'y "
+        "a personne dedans|non personne|vide|c'est vide|elle est vide|la pièce est vide",
+    confirm="confirmé|je confirme|confirme|confirmer",
+    keys={"o": "yes"},
+    seems_passable="sans danger|inoffensi(?:f|ve)|c'est (?:sûr|bon)|(?:peux|peut|pouvez) (?:passer|traverser)",
+    seems_absent="personne|vide|non(?=[,.;!]|$)",
+    courtesies="merci|s'il te plaît|s'il vous plaît|drone|euh|bon|alors|eh bien|ok|d'accord|bonjour|salut|terminé",
+    fillers="c'est il elle est la le les cette on tu vous peux peut pouvez passer traverser y a à dedans ici "
+        "l'intérieur ça va vas-y vas bien totalement complètement vraiment tout fait n'y n'est",
+    nay="non|négatif|personne|aucune?|vide|rien", aye="oui|ouais|si|quelqu'un|(?:une|la|cette) personne|gens|bien sûr",
+    denial=r"pas|jamais|ne|n'(?!y a personne|est dedans)\w+|faux|erreur|désolée?|plaisante\w*|blague|rigole|contraire|"
+        r"oublie|interdit\w*",
+    danger=r"toxiques?|(?<!sans )dangers?|dangereu\w+|risqu\w+|périls?|brûl\w+|feu|flammes?|chaud|acide|chlore|gaz|tue|"
+        r"mort\w*|explos\w+|attention|prudent\w*|évite\w*|contourne\w*|loin|masque|poison",
+    doubt=r"peut[- ]être|probable\w*|possible\w*|crois|pense|suppose\w*|espère\w*|semble\w*|dirait|pourrait|devrait|"
+        r"doute\w*|presque|assez|plutôt|principe|normalement|enfin|mouais|sais",
+    condition=r"si|s'il (?!te|vous)|sauf|condition|tant que|dès|dépend\w*|pourvu|seulement|mais|à part|quand|cas|moins",
+    limits="était|étaient|sera|bientôt|tard|encore|demain|hier|aujourd'hui|matin|soir|avant|après|minutes?|heures?|"
+        "déjà|plus|attends?|attendez|instant|moment|partie|moitié|côté|bords?|plupart|autres?|haut|bas|dessus|milieu|"
+        "un peu|deux|toutes?|gauche|droite|dit|dis|entendu|paraît|selon|d'après|apparemment|liste",
+    asks="quoi|pourquoi|qui|où|comment|quels?|quelles?|lequel|laquelle|est[- ]ce|(?:^(?:peut-on|puis-je|dois-je|y "
+        "a-t-il)(?= .))",
+    blocked=r"pas (?:\w+ ){0,2}(?:sûre?|sans danger|inoffensi\w+|bon|prudent)|toxiques?|(?<!sans )danger|dangereu\w+|"
+        r"chlore|acide|flammes|brûle|mortel\w*|explos\w+|surtout pas|(?:n'y va|ne passe|n'entre|ne va|ne traverse|"
+        r"n'approche)\w* pas|contourne\w*|évite\w*|mieux vaut (?:éviter|pas)|que non|préférerais (?:pas|que non)|"
+        r"jamais|pas question|reste\w* (?:loin|dehors)|interdit",
+    not_blocked=r"pas (?:\w+ ){0,2}(?:toxiques?|dangereu\w+|de danger|mortel\w*)|aucun danger|pas de (?:problème|"
+        r"souci)|rien de (?:toxique|dangereux)",
+    present=r"quelqu'un|(?:un|une|la|mon|ma|deux|trois|quatre|cinq|plusieurs|des|\d+) (?:homme|femme|personnes?|"
+        r"collègues?|enfants?|gens|blessée?s?|hommes|femmes|gardien)|(?:il|elle|ils|elles) (?:est|sont) (?:encore "
+        r")?(?:dedans|à l'intérieur|coincée?s?)|pas vide|coincée?s?|enfermée?s?|occupée|personne,? (?:sauf|à part|"
+        r"n'est sorti\w*|n'a quitté)|pas encore sorti\w*|il manque",
+    unsure="(?:ne |n'en )?sais (?:pas|rien)|aucune idée|pas sûre?(?= *$)|difficile à dire|peux pas (?:dire|voir)",
+    orders={
+        Order.HOLD: "stop|halte|arrête|arrêtez|arrête-toi|ne bouge plus|ne bougez plus|reste là|restez là|pause",
+        Order.CONTINUE: "continue|continuez|continue la mission|reprends|reprends la mission",
+        Order.RETURN: "reviens|revenez|retour|rentre|rentrez|reviens ici|retour à la base|rentre à la base|demi-tour",
+        Order.ABORT: "annule|annulez|annuler|abandonne|abandonnez|annule la mission|abandonne la mission",
+        Order.LAND: "atterris|atterrissez|pose-toi|posez-vous|atterris maintenant|atterris ici|atterrir",
+    },
+    back={
+        ReadingKind.WAIT: "attends|attendez|attends un instant|attends un moment|un instant|un moment|une seconde|une "
+            "minute",
+        ReadingKind.WHERE: "où|où ça|où exactement|c'est où|où es-tu|où est-ce|laquelle|lequel|où donc",
+        ReadingKind.SHOW: "montre|montre-moi|montrez|montrez-moi|montre une photo|montre-moi une photo|photo|fais voir",
+        ReadingKind.WHY: "pourquoi|pourquoi tu demandes|pourquoi cette question|pour quoi faire",
+        ReadingKind.REPEAT: "répète|répétez|pardon|comment|quoi|encore|répète la question|plaît-il",
+    },
+    articles="le|la|les|une?|celle|celui|cette|ce", things="chose", states="c'est|il est|elle est|je veux dire",
+    negates="pas",
+    attributes={"gros": "large", "grosse": "large", "marron": "brown"},
+)  # fmt: skip
+
+SPANISH = AnswerWords(
+    yes="s|y|sí|si|sí sí|sí claro|claro que sí|sí por favor|sí seguro|por supuesto|correcto|exacto|así es|es correcto|"
+        "afirmativo|sí señor",
+    no="n|no|no no|negativo|no gracias",
+    passable="es seguro|sí es seguro|el humo es seguro|sin peligro|sí sin peligro|es inofensivo|sí es inofensivo|"
+        "inofensivo|puedes pasar|sí puedes pasar|puede pasar|puedes atravesarlo|se puede atravesar|se puede pasar",
+    absent="nadie|no hay nadie|no nadie|nadie dentro|no hay nadie dentro|no no hay nadie|nadie está dentro|no hay "
+        "nadie ahí|no hay nadie ahí dentro|vacío|está vacío|está vacía|vacía|la sala está vacía",
+    confirm="confirmo|confirmado|confirmar|confirma",
+    keys={"s": "yes"},
+    seems_passable="es seguro|seguro|sin peligro|inofensivo|(?:puedes?|puede) (?:pasar|atravesarlo|atravesar)",
+    seems_absent="nadie|vací[oa]|no(?=[,.;!]|$)",
+    courtesies="por favor|gracias|dron|eh|bueno|pues|vale|ok|de acuerdo|hola|adiós|señor|señora|oye|mira|cambio",
+    fillers="es está el la lo se puede puedes pasar atravesar atravesarlo hay dentro ahí allí aquí en muy totalmente "
+        "completamente realmente bien claro que",
+    nay=r"no|negativo|nadie|ningún|ningun\w*|vací[oa]|nada", aye="sí|alguien|claro|correcto|gente|una persona",
+    denial="nunca|jamás|tampoco|ni|sin(?! peligro)|falso|error|mentira|broma|perdón|contrario|olvida|prohibido|no "
+        "est[áa]|no del todo|no es|no son|apenas|que no",
+    danger=r"tóxic\w+|(?<!sin )peligro\w*|riesgo\w*|quema\w*|fuego|llamas?|caliente|ácido|cloro|gas|mata|muert\w+|"
+        r"mortal|explo\w+|cuidado|ojo|evita\w*|rodea\w*|lejos|mascarilla|veneno\w*",
+    doubt=r"quizás?|tal vez|probable\w*|posible\w*|creo|pienso|supongo|espero|parece\w*|podría|debería|duda\w*|casi|"
+        r"bastante|más o menos|principio|normalmente|sé|puede ser|algo",
+    condition=r"si(?=[ ,]+\w)|siempre que|salvo|excepto|menos|depende\w*|cuando|s[oó]lo|pero|hasta|mientras|caso",
+    limits=r"era|estaba|fue|será|pronto|luego|todavía|aún|mañana|ayer|hoy|antes|después|minutos?|horas?|ya|tarde|"
+        r"espera|momento|parte|mitad|lado|bordes?|mayoría|otr[oa]s?|arriba|abajo|encima|un poco|algunos?|ambos|todos|"
+        r"izquierd\w+|derech\w+|dicen?|dijo|dijeron|oí|según|al parecer|lista",
+    asks=r"qué|por qué|quién|dónde|cómo|cuál\w*|cuánto\w*|(?:^(?:puedo|debo|eres|hay alguien|tengo que)(?= .))",
+    blocked=r"no (?:\w+ ){0,2}(?:seguro|inofensivo|bueno)|seguro que no|tóxic\w+|(?<!sin )peligro\w*|cloro|ácido|"
+        r"llamas|quema|mortal|explo\w+|veneno\w*|ni se te ocurra|mejor no|prefiero que no|no (?:pases|entres|vayas|"
+        r"vueles|atravieses|te acerques)|rode[aá]\w*|evita\w*|nunca|jamás|prohibido|aléjate",
+    not_blocked=r"(?:no|nada|sin) (?:\w+ ){0,2}(?:tóxic\w+|peligros\w+|mortal|veneno\w*)|ningún peligro|no hay "
+        r"(?:problema|peligro)|no te preocupes",
+    present=r"(?<!no hay )alguien|(?:un|una|mi|dos|tres|cuatro|cinco|varias|varios|\d+) (?:hombre|mujer|personas?|"
+        r"compañer\w+|niñ\w+|herid\w+|hombres|mujeres|guardia)|(?<!nadie )(?:sigue|está|siguen|están) (?:todavía "
+        r")?(?:dentro|atrapad\w+)|no está vací[oa]|atrapad\w+|ocupad\w+|gente|nadie,? (?:salvo|excepto|menos|ha salido|"
+        r"salió)|no ha salido|falta un\w*",
+    unsure=r"no (?:lo )?sé|ni idea|no estoy segur[oa]|difícil de decir|no sabría|no puedo (?:decir|ver)\w*|quién sabe",
+    orders={
+        Order.HOLD: "alto|para|pare|detente|deténgase|stop|quieto|quédate ahí|quédate quieto|pausa|no te muevas|párate",
+        Order.CONTINUE: "continúa|continúe|sigue|siga|continúa la misión|reanuda",
+        Order.RETURN: "vuelve|vuelva|regresa|regrese|vuelve aquí|vuelve a casa|regresa a la base|volver|regresar",
+        Order.ABORT: "aborta|aborte|abortar|cancela|cancele|cancelar|cancela la misión|aborta la misión",
+        Order.LAND: "aterriza|aterrice|aterriza ya|aterriza ahora|aterriza aquí|aterrizar",
+    },
+    back={
+        ReadingKind.WAIT: "espera|espere|espera un momento|un momento|un segundo|un minuto|dame un minuto|momento",
+        ReadingKind.WHERE: "dónde|donde|dónde está|dónde está eso|dónde exactamente|dónde estás|cuál|en dónde",
+        ReadingKind.SHOW: "muestra|muéstrame|muéstramelo|enséñame|enséñame una foto|muéstrame una foto|foto|a ver",
+        ReadingKind.WHY: "por qué|por que|por qué preguntas|para qué|por qué lo preguntas",
+        ReadingKind.REPEAT: "repite|repita|repítelo|otra vez|cómo|cómo dice|perdón|qué|repite la pregunta",
+    },
+    articles="el|la|los|las|una?|es[ea]|est[ea]", things="cosa", states="es|quiero decir|me refiero a", negates="no",
+    attributes={"chica": "small", "chico": "small"},
+)  # fmt: skip
+
+ANSWER_WORDS: Mapping[str, AnswerWords] = {"en": ENGLISH, "de": GERMAN, "fr": FRENCH, "es": SPANISH}
+"""By two-letter code."""

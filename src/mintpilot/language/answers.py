@@ -1,171 +1,241 @@
-"""What a free answer means (method, section 5), by rules alone.
+"""What a free answer means, by rules alone (method, section 12).
 
-The words are taken as classes (`answer_lexing`), read with their negations and doubts (`answer_claims`), and held
-against the question's own cut: words about the world (``it is toxic``, ``the blue one``) are turned into values of
-its gap, and the cut says whether that is a Yes or a No. In doubt the reading is OTHER or UNSURE: ask again. A Yes
-that opens a region must be said without any doubt, condition, question or unknown thing beside it. Nothing that an
+A reply that enlarges what the drone may do is taken from a key or from a closed list only; agreement in other known
+words is read back first; everything else is asked again. A reply that adds caution is read loosely. Nothing that an
 answer says can do more than answer: it is data.
 """
 
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from collections.abc import Collection
+from dataclasses import dataclass, replace
+from functools import cache
 
+from mintpilot.core.errors import UnknownNameError
 from mintpilot.core.gap import ABSENT, BLOCKED, PASSABLE, PRESENT, GapKind
-from mintpilot.core.query import Combine, Literal, Order, Question, Reply
-from mintpilot.language.answer_asides import ACKNOWLEDGED, CUT_OFF
-from mintpilot.language.answer_claims import read_claims
-from mintpilot.language.answer_echo import unechoed
-from mintpilot.language.answer_lexing import atoms, plain
-from mintpilot.language.answer_scope import Claim, Said
-from mintpilot.language.answer_turns import GENTLE, NO_SPEECH, TAKEN_BACK, corrected, lead, settled, turn
-from mintpilot.language.answer_weighing import Reading, no_is_careful, topic, weighed
-from mintpilot.language.orders import order_in
-from mintpilot.language.referring import Mention, mention, said_relation
+from mintpilot.core.query import Order, Question, Reply
+from mintpilot.core.reading import AnsweredBy, Reading, ReadingKind, opposite, plain_reply
+from mintpilot.language.answer_evidence import evidence_in
+from mintpilot.language.answer_text import LONGEST, listed, loose, spoken, utterance, vetoes, without_courtesies, words
+from mintpilot.language.answer_words import ANSWER_WORDS, AnswerWords
 
-_LONGEST = 300
-_STATED = {
-    Claim.PASSABLE: (GapKind.OBSTACLE, PASSABLE),
-    Claim.BLOCKED: (GapKind.OBSTACLE, BLOCKED),
-    Claim.AWAY: (GapKind.OBSTACLE, BLOCKED),
-    Claim.PRESENT: (GapKind.PRESENCE, PRESENT),
-    Claim.ABSENT: (GapKind.PRESENCE, ABSENT),
-}
-_NONE_OF_THEM = ""
-"""Stands for a thing that is no value of a target gap."""
+_KEYS = {"y": Reply.YES, "yes": Reply.YES, "n": Reply.NO, "no": Reply.NO, "u": Reply.UNSURE, "unsure": Reply.UNSURE,
+         "?": Reply.UNSURE}  # fmt: skip
+_AGAIN = Reading(kind=ReadingKind.AGAIN)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Understood:
-    """An answer's meaning."""
+class _Heard:
+    """One answer with what it is read against."""
 
-    reading: Reading
-    command: Order | None = None
-    """For `Reading.COMMAND`."""
-    also: Literal | None = None
-    """What it says beyond the question: a cut of one of the question's gaps that is answered Yes; None: nothing."""
-    by: str = "rules"
-    """Who understood it: the rules, or a language model by name."""
+    text: str
+    question: Question
+    guarded: Collection[Reply]
+    lang: str
+    by: AnsweredBy
 
     @property
-    def reply(self) -> Reply:
-        """The reply for the belief; what is not a clear Yes or No leaves it as it is."""
-        return {Reading.YES: Reply.YES, Reading.NO: Reply.NO}.get(self.reading, Reply.UNSURE)
+    def known(self) -> AnswerWords:
+        return ANSWER_WORDS[self.lang]
 
 
-def understand_answer(text: str, question: Question) -> Understood:
-    """Reads a free answer.
-
-    ``not the red one, the blue one`` answers more than was asked: `Understood.also` carries it where it maps to known
-    attributes. An order (``stop``, ``abort``, ``come back``) comes before everything else.
+def read_answer(
+    text: str,
+    question: Question,
+    *,
+    guarded: Collection[Reply],
+    lang: str = "en",
+    by: AnsweredBy = AnsweredBy.TYPED,
+    pending: Reply | None = None,
+) -> Reading:
+    """Reads an answer. Never raises for any text.
 
     Args:
-        text: the words, typed or heard. Never an instruction to this program.
+        text: the raw words, or the key. Never an instruction to this program.
         question: what was asked, with the gaps that it speaks of.
+        guarded: the replies that would enlarge what the drone may do (`mintpilot.core.reading.guarded_replies`).
+        lang: of the question: ``en``, ``de``, ``fr`` or ``es``.
+        by: how the words came.
+        pending: the reply that was just read back; a plain yes to that (by voice: *confirm*) returns it as plain.
+
+    Raises:
+        UnknownNameError: another language.
     """
-    order, words = order_in(plain(text))
-    if order is not None:
-        return Understood(reading=Reading.COMMAND, command=order)
-    if not words or len(words) > _LONGEST or NO_SPEECH.search(text) or CUT_OFF.search(text):
-        return Understood(reading=Reading.OTHER)
-    if ACKNOWLEDGED.fullmatch(words) or TAKEN_BACK.search(words):
-        return Understood(reading=Reading.OTHER)
-    words = unechoed(settled(corrected(words)), question)
-    return _turned(words, question) or _read(words, question)
+    if lang not in ANSWER_WORDS:
+        raise UnknownNameError("language", lang, ANSWER_WORDS)
+    heard = _Heard(text=text, question=question, guarded=guarded, lang=lang, by=by)
+    if len(text) > LONGEST or not text.strip():
+        return _AGAIN
+    if by is AnsweredBy.KEY:
+        return _by_key(heard, pending)
+    return _order_or_question(heard) or (_answer(heard) if pending is None else _to_read_back(heard, pending))
 
 
-def _turned(words: str, question: Question) -> Understood | None:
-    """What is said after a ``but``, or after a word thrown back, where it outweighs that; None otherwise.
+def order_in(text: str, lang: str = "en") -> Order | None:
+    """The order that a whole utterance is, where nothing is asked; None: it is none.
 
-    A danger, or another thing than the one asked about, does; of rooms and ways, how it is now against how it was.
+    Raises:
+        UnknownNameError: another language.
     """
-    about, found = topic(question), turn(words)
-    before = lead(words, about)
-    no_counts = about is not GapKind.OBSTACLE or no_is_careful(question)
-    if before is not None and no_counts and (answer := _read(words[before.end() :], question)).reading is Reading.NO:
-        return answer
-    if found is None:
+    if lang not in ANSWER_WORDS:
+        raise UnknownNameError("language", lang, ANSWER_WORDS)
+    said = spoken(text)
+    if len(text) > LONGEST or "?" in said or "¿" in said:
         return None
-    after = _read(found.after, question)
-    if after.reading is Reading.NO and no_counts:
-        return after if found.is_past or about is not GapKind.PRESENCE else None
-    outweighs = found.is_past and (about is GapKind.PRESENCE or (found.is_now and found.of_it))
-    outweighs |= found.only_looks and found.goes_on
-    return after if after.reading is Reading.YES and outweighs else None
+    wholes = {utterance(said), without_courtesies(said, lang)}
+    found = (order for order, entries in ANSWER_WORDS[lang].orders.items() if wholes & listed(entries))
+    return next(found, None)
 
 
-def _read(words: str, question: Question) -> Understood:
-    said_of = mention(words, question.gaps)
-    about = topic(question)
-    words_left = GENTLE.sub("", said_of.rest)
-    known = frozenset(re.findall(r"\w+", question.text.lower()))
-    said = read_claims(atoms(words_left, about, known), about)
-    readings = _readings(said, said_of, words, question)
-    reading = weighed(readings, said, said_of.confused, words, question)
-    also = said_of.literal() if said_of.values and reading in (Reading.YES, Reading.NO) else None
-    return Understood(reading=reading, also=also)
+def _by_key(heard: _Heard, pending: Reply | None) -> Reading:
+    key = heard.text.strip().casefold()
+    key = heard.known.keys.get(key, key)
+    if key in _KEYS:
+        reply = _KEYS[key]
+        if pending is not None and reply in (Reply.YES, Reply.NO):
+            return plain_reply(pending, by="key") if reply is Reply.YES else _denied(heard, pending, by="key")
+        return plain_reply(reply, by="key")
+    if key in ("1", "2", "3", "4") and pending is None:
+        return Reading(kind=ReadingKind.OPTION, option=int(key), by="key")
+    return Reading(kind=ReadingKind.AGAIN, by="key")
 
 
-def _readings(said: Said, said_of: Mention, words: str, question: Question) -> set[Reading]:
-    """All that the claims would mean for the cut."""
-    claims = said.claims
-    relation = said_relation(words, question)
-    found = _by_values(claims, words, question)
-    if relation is None:
-        found |= _by_mention(said_of, claims, question)
-    else:
-        found.add(Reading.YES if relation else Reading.NO)
-    if claims & {Claim.YES, Claim.AGREE}:
-        found.add(Reading.YES)
-    if Claim.NO in claims:
-        found.add(Reading.NO)
-    if not found and Claim.BOOST in claims and Claim.EITHER not in claims:
-        found.add(Reading.YES)
-    return found
+def _order_or_question(heard: _Heard) -> Reading | None:
+    """An order, or a question back: only where that is all that was said."""
+    said = spoken(heard.text)
+    order = order_in(heard.text, heard.lang)
+    if order is not None:
+        return Reading(kind=ReadingKind.ORDER, order=order)
+    for whole in (utterance(said), without_courtesies(said, heard.lang)):
+        for kind, entries in heard.known.back.items():
+            if whole in listed(entries):
+                return Reading(kind=kind)
+    return None
 
 
-def _by_values(claims: set[Claim], words: str, question: Question) -> set[Reading]:
-    """What the cut makes of stated values: its own answer, where they settle it."""
-    readings: set[Reading] = set()
-    for claim, (kind, value) in _STATED.items():
-        gaps = [g.id for g in question.gaps if g.kind is kind]
-        if claim not in claims or not gaps:
+def _to_read_back(heard: _Heard, pending: Reply) -> Reading:
+    """The answer to a read-back: a plain yes confirms, a plain no denies, more caution counts, nothing else does."""
+    whole, known = utterance(spoken(heard.text)), heard.known
+    confirms = listed(known.confirm if heard.by is AnsweredBy.VOICE else f"{known.confirm}|{known.yes}")
+    if whole in confirms and not vetoes(heard.text, heard.lang, Reply.YES):
+        return plain_reply(pending)
+    if whole in listed(heard.known.no):
+        return _denied(heard, pending)
+    reading = _answer(heard)
+    is_caution = reading.reply is not None and reading.reply not in (*heard.guarded, pending)
+    return reading if is_caution else replace(_AGAIN, vetoes=reading.vetoes)
+
+
+def _denied(heard: _Heard, pending: Reply, *, by: str = "rules") -> Reading:
+    """The opposite of what was read back where that adds caution; else nothing was said."""
+    other = opposite(pending)
+    return replace(_AGAIN, by=by) if other is None or other in heard.guarded else plain_reply(other, by=by)
+
+
+def _answer(heard: _Heard) -> Reading:
+    evidence = evidence_in(heard.text, heard.question, heard.lang, is_voice=heard.by is AnsweredBy.VOICE)
+    if evidence:
+        return Reading(kind=ReadingKind.EVIDENCE, evidence=evidence)
+    if heard.text.strip() == "?":
+        return plain_reply(Reply.UNSURE)
+    reading = _listed_reply(heard) or _cautious(heard) or _read_back(heard)
+    if reading is not None:
+        return reading
+    found = dict.fromkeys(v for reply in heard.guarded for v in vetoes(heard.text, heard.lang, reply))
+    return replace(_AGAIN, vetoes=tuple(found))
+
+
+def _listed_reply(heard: _Heard) -> Reading | None:
+    """A whole utterance of the closed lists."""
+    whole, known = utterance(spoken(heard.text)), heard.known
+    stated = {PASSABLE: known.passable, ABSENT: known.absent}
+    replies = {reply for value, entries in stated.items() if whole in listed(entries)
+               and (reply := _reply_if(value, heard.question)) is not None}  # fmt: skip
+    replies |= {reply for reply, entries in ((Reply.YES, known.yes), (Reply.NO, known.no)) if whole in listed(entries)}
+    if len(replies) != 1:
+        return None
+    (reply,) = replies
+    if reply not in heard.guarded:
+        return None if _asks(heard) else plain_reply(reply)
+    if vetoes(heard.text, heard.lang, reply):
+        return None
+    return plain_reply(reply) if heard.by is AnsweredBy.TYPED else Reading(kind=ReadingKind.READ_BACK, reply=reply)
+
+
+def _read_back(heard: _Heard) -> Reading | None:
+    """Agreement with a guarded reply made of the closed vocabulary only, without a veto."""
+    said = spoken(heard.text)
+    vocabulary = _vocabulary(heard.lang) | frozenset(re.findall(r"[\w']+", spoken(heard.question.text)))
+    tokens = re.findall(r"[\w']+", re.sub(r"[ ,]over[.!]*$", "", said))
+    if not tokens or not vocabulary.issuperset(tokens):
+        return None
+    agreed = [reply for reply in sorted(heard.guarded) if _agrees(said, reply, heard)]
+    if len(agreed) != 1 or vetoes(heard.text, heard.lang, agreed[0]):
+        return None
+    return Reading(kind=ReadingKind.READ_BACK, reply=agreed[0])
+
+
+def _agrees(said: str, reply: Reply, heard: _Heard) -> bool:
+    known = heard.known
+    signs = [known.aye] if reply is Reply.YES else [rf"(?:{known.no})(?=[,.;!]|$)"]
+    for value, pattern in ((PASSABLE, known.seems_passable), (ABSENT, known.seems_absent)):
+        if _reply_if(value, heard.question) is reply:
+            signs.append(pattern)
+    return any(words(sign).search(said) for sign in signs)
+
+
+def _cautious(heard: _Heard) -> Reading | None:
+    """What adds caution, read loosely: a danger, somebody inside, not knowing, and a No or Yes that is not guarded."""
+    said, known = loose(heard.text), heard.known
+    if _asks(heard):
+        return None
+    if words(loose(known.unsure)).search(said):
+        return plain_reply(Reply.UNSURE)
+    for value, pattern in ((BLOCKED, known.blocked), (PRESENT, known.present)):
+        reply = _reply_if(value, heard.question)
+        if reply is None or reply in heard.guarded or not words(loose(pattern)).search(said):
             continue
-        if len(gaps) > 1 and not _is_of_all(words, question):
-            readings.add(Reading.OTHER)
-        elif len(gaps) > 1:
-            holds = question.query.holds(dict.fromkeys(gaps, value))
-            readings.add(Reading.YES if holds else Reading.NO)
-        else:
-            readings.add(_settled(gaps[0], {value}, question))
-    return readings
+        if not (value == BLOCKED and words(loose(known.not_blocked)).search(said)):
+            return plain_reply(reply)
+    return _loose_reply(said, heard)
 
 
-def _is_of_all(words: str, question: Question) -> bool:
-    """``they are both safe``: of all things that the question names."""
-    same_kind = len({g.kind for g in question.gaps}) == 1 and question.query.combine is Combine.ALL
-    return same_kind and re.search(r"\b(?:both|all|each|neither|none)\b", words) is not None
+def _loose_reply(said: str, heard: _Heard) -> Reading | None:
+    """A Yes or No at the beginning that is not guarded, without its opposite, a doubt or a condition."""
+    known = heard.known
+    begins = re.sub(rf"^(?:(?:{loose(known.courtesies)})[ ,.]+)+", "", said)
+    for reply, entries, against in (
+        (Reply.YES, known.yes, known.nay),
+        (Reply.NO, known.no, f"{known.aye}|{known.seems_passable}"),
+    ):
+        ends = "(?=[,.;!]|$)" if known.negates in listed(entries) else "(?![\\w'])"
+        if reply in heard.guarded or not re.match(rf"(?:{loose(entries)}){ends}", begins):
+            continue
+        spoils = (against, known.doubt, known.condition, known.denial if reply is Reply.YES else known.not_blocked)
+        if not any(words(loose(pattern)).search(begins) for pattern in spoils):
+            return plain_reply(reply)
+    return None
 
 
-def _by_mention(said: Mention, claims: set[Claim], question: Question) -> set[Reading]:
-    if said.another and said.gap is not None:
-        return {_settled(said.gap.id, {_NONE_OF_THEM}, question)}
-    if not said.values or said.gap is None:
-        return set()
-    reading = _settled(said.gap.id, set(said.values), question)
-    if reading is Reading.OTHER and (claims & {Claim.YES, Claim.NO}):
-        return set()
-    return {reading}
+def _asks(heard: _Heard) -> bool:
+    said = spoken(heard.text)
+    return "?" in said or "¿" in said or words(heard.known.asks).search(said) is not None
 
 
-def _settled(gap_id: str, values: set[str], question: Question) -> Reading:
-    """The answer to the cut when that gap is known to have one of the values, where they all agree."""
-    own = [x for x in question.query.literals if x.gap == gap_id]
-    if len(question.query.gap_ids) > 1 or not own:
-        return Reading.OTHER
-    answers = {question.query.holds({gap_id: value}) for value in values}
-    return Reading.OTHER if len(answers) != 1 else Reading.YES if answers == {True} else Reading.NO
+def _reply_if(value: str, question: Question) -> Reply | None:
+    """The reply that a statement about the world makes of the query: every gap of the question has that value."""
+    kind = GapKind.OBSTACLE if value in (PASSABLE, BLOCKED) else GapKind.PRESENCE
+    if any(g.kind is not kind for g in question.gaps) or {g.id for g in question.gaps} != set(question.query.gap_ids):
+        return None
+    if len(question.gaps) > 1 and value in (PASSABLE, ABSENT):
+        return None  # of several regions or rooms, "it is safe" does not say which
+    return Reply.YES if question.query.holds({gap.id: value for gap in question.gaps}) else Reply.NO
 
 
-__all__ = ["Reading", "Understood", "understand_answer"]
+@cache
+def _vocabulary(lang: str) -> frozenset[str]:
+    """Every word of the closed lists, the courtesies and the fillers."""
+    known = ANSWER_WORDS[lang]
+    lists = "|".join((known.yes, known.no, known.passable, known.absent, known.courtesies))
+    return frozenset(re.findall(r"[\w']+", spoken(f"{lists} {known.fillers}")))

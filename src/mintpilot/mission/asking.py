@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 
 from mintpilot.core.decisions import AskQuestion, Reasoning
-from mintpilot.core.inputs import Answered, QuestionReworded, QuestionShown
-from mintpilot.core.query import Answer, Query, Reply
+from mintpilot.core.inputs import Answered, MoreTimeWanted, QuestionReworded, QuestionShown
+from mintpilot.core.query import Answer, Query, Reply, Standing
 from mintpilot.mission.belief_state import BeliefState, update
 from mintpilot.mission.deliberation import settle
 from mintpilot.mission.directives import ShowQuestion
@@ -73,8 +73,29 @@ def answered(t: Transition, event: Answered) -> None:
     if open_ is None or open_.question.id != event.question:
         _late(t, event)
         return
-    _learn(t, open_.question.query, open_.question.text, event.answer)
+    answer, pending = event.answer, open_.question.read_back
+    if answer.standing is Standing.CONFIRMED and pending is not None and pending.part == answer.part:
+        answer = replace(pending, standing=Standing.CONFIRMED, latency_s=answer.latency_s)
+    elif _must_be_read_back(t, open_.question.query, answer):
+        read_back = replace(open_.question, read_back=replace(answer, standing=Standing.UNCONFIRMED))
+        t.set(question=replace(open_, question=read_back))
+        t.give(ShowQuestion(question=read_back, patience_s=max(0.0, open_.deadline_s - t.state.clock_s)))
+        return
+    _learn(t, open_.question.query, open_.question.text, answer)
     t.withdraw("it was answered")
+
+
+def more_time(t: Transition, event: MoreTimeWanted) -> None:
+    """Waits for the answer once more as long, once for each question."""
+    open_ = t.state.question
+    if open_ is None or open_.question.id != event.question:
+        return
+    if open_.extended:
+        t.tell("I cannot wait any longer than that.")
+        return
+    patience_s = t.state.setup.mission.asking.patience_s
+    t.set(question=replace(open_, extended=True, deadline_s=open_.deadline_s + patience_s))
+    t.tell(f"I wait {patience_s:.0f} s more.")
 
 
 def unanswered(t: Transition) -> None:
@@ -90,6 +111,17 @@ def somebody_spoke(t: Transition) -> None:
     """Silence is over."""
     if t.state.beliefs is not None and t.state.beliefs.silent:
         t.set(beliefs=replace(t.state.beliefs, silent=False))
+
+
+def _must_be_read_back(t: Transition, query: Query, answer: Answer) -> bool:
+    """Whether an answer takes caution away and is not plain enough for that (method, section 12)."""
+    if answer.part is None:
+        return False
+    is_plain = answer.standing is Standing.PLAIN and answer.by != "voice" and answer.understood_by != "model"
+    settings = t.state.setup.mission.asking
+    if is_plain and not answer.also:
+        return False
+    return enlarges(t.beliefs, update(t.beliefs, query, answer, settings).state, settings)
 
 
 def _waited_s(t: Transition, open_: OpenQuestion) -> float:

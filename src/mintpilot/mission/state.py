@@ -94,6 +94,8 @@ class OpenQuestion:
     shown_s: float | None = None
     first_text: str = ""
     """The words that were there first, where better ones followed; else empty."""
+    extended: bool = False
+    """Whether more time was granted."""
     reworded_s: float | None = None
     """How long the better words took to make, seconds; None: there are none."""
 

@@ -12,6 +12,7 @@ from mintpilot.core.inputs import (
     LinkChanged,
     MapObserved,
     MissionBegun,
+    MoreTimeWanted,
     MotionEnded,
     Ordered,
     QuestionReworded,
@@ -68,6 +69,8 @@ def step(state: MissionState, event: Input) -> tuple[MissionState, tuple[Directi
         case Answered():
             asking.somebody_spoke(t)
             asking.answered(t, event)
+        case MoreTimeWanted():
+            asking.more_time(t, event)
         case Ordered():
             asking.somebody_spoke(t)
             ordering.ordered(t, event)
