@@ -9,14 +9,15 @@ from bench.sections import ROOT, Section, Table, keep
 from mintpilot.assembly.registry import load
 from mintpilot.benchmark.language_report import LanguageOptions, language_tables, measure_language, models_there
 
-INSTRUCTIONS = ROOT.parent / "shared" / "data" / "instructions" / "mobile_manipulation.txt"
+INSTRUCTIONS = ROOT / "bench" / "data" / "instructions.tsv"
 NOTES = (
     "The answers were written while the rules were made: what is measured on them is no forecast. Four further lists "
     "were written without sight of the rules, of 240 (meant to be hard), 200, 160 and 200 answers. At first reading "
     "74.6, 91.0, 92.5 and 96.0 % were understood, with 2, 1, 1 and 0 Yes that were not said. After each of the first "
     "three the classes of sentences behind the misses were mended; the fourth stands as it was read.",
     "A Yes about an obstacle is never taken from a model: there it can only find a No.",
-    "Ambiguous instructions: rules were made with an eye on the first 200 blocks only. Objects only, not places.",
+    "The instructions were written before the grammar, by the same author. At first reading 3 of 361 were silently "
+    "wrong (at most 2.1 %), and 196 of the 211 within the verbs right; the classes behind those were mended then.",
 )
 
 
@@ -36,8 +37,8 @@ def main() -> None:
         name="50-language",
         title="Language: the rules alone, and with models",
         command=f"python -m bench.language{named} --sample {options.sample}",
-        how="As `mintpilot bench language` measures: the package's own instructions and answers. An answer that was "
-        "unsure or beside the point counts as understood when it is asked again. Models are given a seeded sample.",
+        how="As `mintpilot bench language` measures: the instructions in bench/data, the package's own answers. An "
+        "answer that was unsure or beside the point counts as understood when it is asked again. Models get a seeded sample.",
         tables=[Table(caption=caption, header=header, rows=rows) for caption, header, rows in language_tables(result)],
         notes=(*NOTES, *(f"Left out: {reason}" for reason in result.left_out)),
     )

@@ -15,8 +15,9 @@ from mintpilot.core.query import Combine, Reply
 from mintpilot.core.tree import Mint, Node, PlanClass
 from mintpilot.language.answers import Reading
 from mintpilot.language.doubles import FunctionModel, NoModel
+from mintpilot.language.instruction_model import parse_with_model
 from mintpilot.language.proposing import propose_cuts
-from mintpilot.language.reading import parse_with_model, understand_with_model
+from mintpilot.language.reading import understand_with_model
 
 from . import questions
 

@@ -92,6 +92,7 @@ def _planned(file: MissionFile, folder: Path, talk: Talk, *, strategy: str, seed
     return deliberation_report(
         seen,
         mission=file.name,
+        task=world.task,
         strategy=strategy,
         accounts=first_accounts(seen.first),
         question=question,

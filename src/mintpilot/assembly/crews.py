@@ -12,9 +12,11 @@ import numpy as np
 from mintpilot.assembly.registry import load
 from mintpilot.assembly.talk import Talk
 from mintpilot.assembly.worlds import World
-from mintpilot.core.geometry import GridFrame
+from mintpilot.core.errors import InputError
+from mintpilot.core.geometry import Floats, GridFrame
 from mintpilot.core.ports import Operator, Perception, Recorder
 from mintpilot.core.semantic_map import SemanticMap
+from mintpilot.core.task import Action
 from mintpilot.interaction.scripted import ScriptedOperator
 from mintpilot.mapping.builder import MapBuilder
 from mintpilot.mission.eyes import CameraEyes, Eyes, FixedEyes
@@ -25,6 +27,7 @@ from mintpilot.mission_file.schema import OperatorSpec
 from mintpilot.simulation.kinematic import KinematicSimulator
 from mintpilot.simulation.mujoco_vehicle import MujocoSimulator
 from mintpilot.simulation.scene_eyes import SceneEyes
+from mintpilot.uncertainty.keep_away import with_keep_away
 
 
 class VehicleChoice(StrEnum):
@@ -112,7 +115,14 @@ class _CrewContext(AbstractContextManager[Crew]):
             perception: Perception = load("perception", choices.perception)()
             builder = map_builder(world)
             eyes = CameraEyes(camera=simulator, perception=perception, builder=builder, recorder=self._recorder)
-            return self._crew(parts, simulator, eyes, self._surveyed(simulator, eyes), watch_map=True)
+            seen_by_camera: Eyes = KeepAwayEyes(eyes, world) if world.task.keep_away else eyes
+            return self._crew(parts, simulator, seen_by_camera, self._surveyed(simulator, eyes), watch_map=True)
+        photographs = [g for g in world.task.subgoals if g.action is Action.PHOTOGRAPH]
+        if photographs:
+            raise InputError(
+                f"'photograph {photographs[0].reference.phrase}' cannot be done: this vehicle has no camera. "
+                "Fly with one that has, or leave the picture out."
+            )
         kinematic = KinematicSimulator(world.scene, world.rules, seed=world.seed)
         seen: Eyes = FixedEyes(world.map) if world.is_map else SceneEyes(world.scene, kinematic.state)
         changes = any(solid.appears_s > 0 for solid in world.scene.solids)
@@ -134,7 +144,7 @@ class _CrewContext(AbstractContextManager[Crew]):
             else:
                 first = survey(mission, mission.survey, vehicle=simulator, eyes=eyes, recorder=self._recorder)
             simulator.begin_mission()
-            return first
+            return with_keep_away(first, self._world.task, start_m=mission.start_m, limits=mission.limits)
 
         return fly
 
@@ -165,6 +175,31 @@ class _CrewContext(AbstractContextManager[Crew]):
             strategy_name=self._choices.strategy,
             seed=self._world.seed,
         )
+
+
+class KeepAwayEyes(Eyes):
+    """Draws what is to be kept away from on every map that the drone makes.
+
+    Args:
+        eyes: make the map.
+        world: says from what, and where the mission starts.
+    """
+
+    def __init__(self, eyes: Eyes, world: World) -> None:
+        self._eyes = eyes
+        self._world = world
+
+    def look(self, previous: SemanticMap | None) -> SemanticMap:
+        """See `Eyes.look`."""
+        mission = self._world.mission
+        newer = self._eyes.look(previous)
+        return with_keep_away(
+            newer, self._world.task, start_m=mission.start_m, limits=mission.limits, previous=previous
+        )
+
+    def flown(self, points_m: Floats, radius_m: float) -> None:
+        """See `Eyes.flown`."""
+        self._eyes.flown(points_m, radius_m)
 
 
 def map_builder(world: World) -> MapBuilder:

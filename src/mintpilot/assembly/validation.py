@@ -3,16 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 
 from mintpilot.assembly.registry import load
 from mintpilot.assembly.worlds import build_world, scenario_of
 from mintpilot.core.errors import MintPilotError
 from mintpilot.language.instruction import parse_instruction
+from mintpilot.language.phrases import parse_phrase
 from mintpilot.mission_file.reader import Place, Problem, place_problems
 from mintpilot.mission_file.schema import MissionFile
-from mintpilot.mission_file.schema_world import ScenarioWorld
+from mintpilot.mission_file.schema_world import MapWorld, ScenarioWorld
 from mintpilot.uncertainty.findings import find_gaps
+
+_ANYWHERE = (0.0, 0.0, 0.0)
+"""Stands for the start until the world is built."""
 
 
 def validation_problems(path: str | Path, file: MissionFile) -> list[Problem]:
@@ -32,12 +37,28 @@ def _mistakes(file: MissionFile, base: Path) -> Iterator[tuple[Place, str]]:
         *_tried(("language", "model"), lambda: load("language", file.language.model)),
     ]
     if file.goals is None:
-        found += _tried(("instruction",), lambda: parse_instruction(file.instruction))
+        found += _tried(
+            ("instruction",), lambda: parse_instruction(file.instruction, home_m=_ANYWHERE, known=_words(file))
+        )
+    regions = {r.id for r in file.world.regions} if isinstance(file.world, MapWorld) else set()
+    for index, wish in enumerate(file.keep_away):
+        if wish.thing not in regions:
+            found += _tried(("keep_away", index, "from"), partial(parse_phrase, wish.thing, _words(file)))
     if isinstance(file.world, ScenarioWorld):
         found += _scenario_mistakes(file.world)
     yield from found
     if not found:
         yield from _world_mistakes(file, base)
+
+
+def _words(file: MissionFile) -> frozenset[str]:
+    """The words that a given map uses for things, as its file states them."""
+    if not isinstance(file.world, MapWorld):
+        return frozenset()
+    objects = file.world.objects
+    said = [o.label for o in objects] + [v for o in objects for values in o.attributes.values() for v in values]
+    said += [room.description for room in file.world.rooms] + [region.description for region in file.world.regions]
+    return frozenset(word for text in said for word in text.lower().replace("_", " ").split())
 
 
 def _scenario_mistakes(world: ScenarioWorld) -> list[tuple[Place, str]]:

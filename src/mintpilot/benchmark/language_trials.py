@@ -6,16 +6,18 @@ import random
 import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from statistics import mean, quantiles
 
-from mintpilot.benchmark.language_cases import AnswerCase, asked, box, instruction_cases, written
-from mintpilot.core.errors import InputError
+from mintpilot.benchmark.instruction_trials import Score, read_rows, score
+from mintpilot.benchmark.language_cases import AnswerCase, asked, box
 from mintpilot.core.gap import ABSENT, BLOCKED, PASSABLE, PRESENT, GapKind, KnowledgeGap
 from mintpilot.core.ports import Completion, LanguageModel
 from mintpilot.core.query import Question, Saying, SayingKind
 from mintpilot.elicitation.wording import word_question
 from mintpilot.language.answers import Reading
-from mintpilot.language.reading import parse_with_model, understand_with_model
+from mintpilot.language.instruction_model import parse_with_model
+from mintpilot.language.reading import understand_with_model
 from mintpilot.language.wording import ModelWording
 
 PATIENT_S = 60.0
@@ -61,15 +63,6 @@ class Speed:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Parsed:
-    """Instructions read as expected, as something else, or refused (the rest)."""
-
-    n: int
-    as_expected: int
-    as_something_else: int
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
 class Answered:
     """Answers understood; a Yes that was not said; a Yes taken for a No."""
 
@@ -92,18 +85,9 @@ class Worded:
     speed: Speed
 
 
-def parse_all(model: LanguageModel) -> Parsed:
-    """All written-down instructions."""
-    cases = [case for group in instruction_cases().values() for case in group.items()]
-    right = wrong = 0
-    for text, expected in cases:
-        try:
-            task = parse_with_model(text, model, home_m=_HOME_M, timeout_s=PATIENT_S)
-        except InputError:
-            continue
-        right += written(task) == expected
-        wrong += written(task) != expected
-    return Parsed(n=len(cases), as_expected=right, as_something_else=wrong)
+def parse_all(file: Path, model: LanguageModel) -> Score:
+    """A list of instructions with the steps that they mean, each read by the grammar and, where refused, the model."""
+    return score(read_rows(file), lambda text: parse_with_model(text, model, home_m=_HOME_M, timeout_s=PATIENT_S))
 
 
 def answer_all(cases: Sequence[AnswerCase], model: LanguageModel) -> Answered:

@@ -14,6 +14,7 @@ from rich.console import Console
 from mintpilot.cli.bench import bench
 from mintpilot.cli.exits import EPILOGUE, ExitCode, fail, guarded
 from mintpilot.cli.interrupts import listen
+from mintpilot.cli.understand_instruction import instruction
 
 app = App(
     name="mintpilot",
@@ -231,6 +232,10 @@ def doctor(*, json: Json = False, debug: Flag = False) -> ExitCode:
 
 
 app.command(bench)
+
+understand = App(name="understand", help="Show what the drone understands, without flying anything.")
+understand.command(instruction)
+app.command(understand)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -128,7 +128,7 @@ class Task:
     slowly: bool = False
     """True when the person asked to fly slowly: the whole flight is flown at `SLOW` of the cruise speed."""
     needs_confirmation: bool = False
-    """True when a language model read the instruction: nothing is flown before the operator has said yes to the steps."""
+    """True when a language model read the instruction: nothing is flown before the operator's yes to the steps."""
 
     @property
     def steps(self) -> tuple[Step, ...]:

@@ -2,18 +2,22 @@
 
 from mintpilot.language.answers import Reading, Understood, understand_answer
 from mintpilot.language.instruction import Capabilities, parse_instruction
+from mintpilot.language.instruction_model import parse_with_model
+from mintpilot.language.phrases import InstructionError, parse_phrase
 from mintpilot.language.proposing import Proposals, propose_cuts
-from mintpilot.language.reading import parse_with_model, understand_with_model
+from mintpilot.language.reading import understand_with_model
 from mintpilot.language.translating import wording_for
 from mintpilot.language.wording import ModelWording
 
 __all__ = [
     "Capabilities",
+    "InstructionError",
     "ModelWording",
     "Proposals",
     "Reading",
     "Understood",
     "parse_instruction",
+    "parse_phrase",
     "parse_with_model",
     "propose_cuts",
     "understand_answer",

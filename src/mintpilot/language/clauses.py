@@ -4,19 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import suppress
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
-from mintpilot.core.errors import InputError
 from mintpilot.core.geometry import Vec3
 from mintpilot.core.observation import Attribute
 from mintpilot.core.task import START, Action, Avoidance, KeepAway, Reference, SubGoal
 from mintpilot.language import lexicon
-from mintpilot.language.phrases import Unread, Words, noun_phrase
+from mintpilot.language.phrases import Unread, Words, noun_phrase, refuse
 
 PERSON, ROOM = "person", "room"
 HURT_PEOPLE = Reference(
     phrase="anyone hurt", label=PERSON, attributes=(Attribute(name="condition", value="injured"),), every=True
 )
+
+
 @dataclass(slots=True)
 class Reading:
     """What was understood so far."""
@@ -29,6 +30,9 @@ class Reading:
     keep_away: list[KeepAway] = field(default_factory=list)
     slowly: bool = False
     carried: Reference | None = None
+    listed: int = 1
+    """How many things the last list had."""
+    took_off: bool = False
     named: list[Reference] = field(default_factory=list)
     """Everything that was spoken of, oldest first: what pronouns look back to."""
     told: Reference | None = None
@@ -61,51 +65,61 @@ class Reading:
             return self.meant(words.tokens[words.at - 1])
         if words.take("each of them", "all of them", "every one of them"):
             last = self.named[-1] if self.named and self.named[-1].every else None
-            return last or words.fail()  # type: ignore[return-value]
+            return last or words.fail()
         return noun_phrase(words, tail=tail, before=self.named[-1] if self.named else None)
 
     def phrases(self) -> Iterator[Reference]:
         """One or more of them in a list: ``the gate, the rack and the pillar``."""
-        yield self.phrase()
+        last = self.phrase()
+        self.listed = 1
+        yield last
         while True:
             at = self.words.at
-            if not self.words.take(",", ", and", "and"):
+            joint = self.words.take(",", ", and", "and")
+            more = self._listed_next() if joint else None
+            if more is None:
+                self.words.at = at
                 return
-            with suppress(Unread):
-                if self.words.next() not in ("it", "them", "him", "her", "there", "to"):
-                    more = noun_phrase(self.words, before=self.named[-1] if self.named else None)
-                    self.modifiers_ahead()
-                    yield more
-                    continue
-            self.words.at = at
-            return
+            if joint == "and" and any(a.name in ("near", "contents") for a in last.attributes):
+                self.words.fail()  # the box next to the rack and the gate: of which is the gate a part?
+            self.listed += 1
+            last = more
+            yield more
 
-    def modifiers_ahead(self) -> None:
-        """Raises `Unread` where the phrase just read is rather the beginning of a sentence: ``the box is``."""
-        if self.words.next() in ("is", "are", "needs", "need", "was", "has", "must", "should"):
-            self.words.fail()
+    def _listed_next(self) -> Reference | None:
+        with suppress(Unread):
+            if self.words.next() in ("it", "them", "him", "her", "there", "to"):
+                return None
+            more = noun_phrase(self.words, before=self.named[-1] if self.named else None)
+            if self.words.next() not in ("is", "are", "needs", "need", "was", "has", "must", "should"):
+                return more
+        return None
 
     def meant(self, pronoun: str) -> Reference:
-        """What a pronoun means: the last person or thing. Raises `InputError` where that is none, or not certain."""
-        people = [r for r in self.named if is_person(r)]
+        """What a pronoun means: the last person or thing. Raises `InstructionError` where that is not certain."""
         if pronoun in ("him", "her", "them"):
-            found = list(dict.fromkeys(people))
+            found = list(dict.fromkeys(r for r in self.named if is_person(r)))
+            if pronoun == "them" and self.named:
+                found += [r for r in self.named if r.every and not is_person(r)]
+                found += [r for r in self.named[-1:] if self.listed > 1 and r not in found]
             if len(found) > 1:
-                raise InputError(f"'{pronoun}' may mean {_listed(found)}: name who is meant")
+                refuse(pronoun, f"may mean {_listed(found)}: name who is meant")
         elif pronoun == "it" and self.carried is not None:
             found = [self.carried]
         else:
-            found = [r for r in self.named if not is_person(r) and not r.every][-1:]
+            taken = [g.reference for g in self.subgoals if g.action is Action.PICK] if pronoun == "there" else []
+            taken += [g.thing for g in self.subgoals if g.thing is not None] if pronoun == "there" else []
+            found = [r for r in self.named if not is_person(r) and not r.every and r not in taken][-1:]
         if not found:
-            raise InputError(f"'{pronoun}' refers to nothing that was named before: name the person or thing")
+            refuse(pronoun, "refers to nothing that was named before: name the person or thing")
         if self.told is found[-1]:
             self.told = None
         return found[-1]
 
     def home(self) -> Reference:
-        """The place of take-off. Raises `InputError` where it is not known."""
+        """The place of take-off. Raises `InstructionError` where it is not known."""
         if self.home_m is None:
-            raise InputError("where the drone starts is not known here: name the place to come back to")
+            refuse(START, "is not known here: name the place to come back to")
         return Reference(phrase=START, position_m=self.home_m)
 
     def _owns(self) -> bool:
@@ -118,7 +132,7 @@ class Reading:
         return False
 
 
-_STATE = ("subgoals", "seeks_people", "avoid", "keep_away", "slowly", "carried", "named", "told")
+_STATE = ("took_off", "listed", "subgoals", "seeks_people", "avoid", "keep_away", "slowly", "carried", "named", "told")
 
 
 def is_person(reference: Reference) -> bool:
@@ -126,3 +140,5 @@ def is_person(reference: Reference) -> bool:
     return reference.label == PERSON or reference.label in lexicon.ROLES
 
 
+def _listed(references: list[Reference]) -> str:
+    return " or ".join(f"'{r.phrase}'" for r in references)

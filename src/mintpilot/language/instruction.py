@@ -1,7 +1,7 @@
 """Instruction [I] → task, by one small grammar (method, section 1).
 
-An instruction is a list of clauses; each becomes typed steps or says what is stayed out of. Every word must have its part
-in the reading. One that has none refuses the whole instruction and is named: nothing is guessed and nothing left out.
+An instruction is a list of clauses; each becomes typed steps or says what is stayed out of. Every word must have its
+part in the reading. One that has none refuses the whole instruction and is named: nothing is guessed, nothing left out.
 """
 
 from __future__ import annotations
@@ -9,51 +9,20 @@ from __future__ import annotations
 from collections.abc import Collection
 from dataclasses import dataclass
 
-from mintpilot.core.errors import InputError
 from mintpilot.core.geometry import Vec3
 from mintpilot.core.task import Action, SubGoal, Task
-from mintpilot.language import lexicon
+from mintpilot.language import lexicon, verbs
 from mintpilot.language.clauses import HURT_PEOPLE, Reading, is_person
-from mintpilot.language.phrases import Words, words_of
-from mintpilot.language.rules import keeps_out, read_clause
+from mintpilot.language.keeping_out import keeps_out
+from mintpilot.language.phrases import InstructionError, Words, words_of
+from mintpilot.language.rules import read_clause
 
 _LONGEST = 600
 _MARKS = (".", ";", "!", "?", ":")
-_JOINTS = (
-    ",", "and", "then", "finally", "next", "also", "afterwards", "after that", "after this", "later", "first", "lastly",
-    "when you are done", "when done", "once done", "once you are done", "as well",
-)  # fmt: skip
-_POLITE = (
-    "please", "could you", "can you", "would you", "will you", "i need you to", "i want you to", "i would like you to",
-    "i'd like you to", "let's", "let us", "ok", "okay", "so", "drone", "hey", "hello", "your task is to", "kindly", "try to",
-    "your mission is to", "mission", "task", "make sure to", "be sure to", "you should", "you must", "we need you to",
-    "go and", "make sure you", "be sure you",
-)  # fmt: skip
-_AFTERTHOUGHTS = ("please", "for me", "for us", "first", "too", "as well", "there", "thanks", "thank you", "now")
-_GERUNDS = {
-    "going": "go", "flying": "fly", "visiting": "visit", "finding": "find", "checking": "check", "picking": "pick",
-    "bringing": "bring", "taking": "take", "looking": "look", "searching": "search", "carrying": "carry",
-    "moving": "move", "reaching": "reach", "photographing": "photograph", "counting": "count", "delivering": "deliver",
-    "inspecting": "inspect", "heading": "head",
-}  # fmt: skip
 _DOING = {
     Action.GO: "go to", Action.PICK: "pick up", Action.DELIVER: "deliver to", Action.LOOK: "look into",
     Action.COUNT: "count", Action.PHOTOGRAPH: "photograph", Action.REPORT: "report",
 }  # fmt: skip
-
-
-class InstructionError(InputError):
-    """An instruction that is not understood.
-
-    Attributes:
-        word: the word that has no part in any reading; empty where it is not one word.
-        reason: why it is refused.
-    """
-
-    def __init__(self, message: str, *, word: str = "", reason: str = "") -> None:
-        super().__init__(message)
-        self.word = word
-        self.reason = reason or message
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -107,9 +76,13 @@ def _read_sentence(reading: Reading) -> None:
         if not read_clause(reading) or not words.take(","):
             raise _refusal(reading, begun)
     while words.next() and words.next() not in _MARKS:
-        at = words.at
+        at, is_first = words.at, not reading.subgoals
+        words.take("first" if is_first else "")
+        _skip_joints(words)
+        words.open = words.next() not in lexicon.LIGHT_VERBS
         if not _read_one(reading):
             raise _refusal(reading, begun)
+        words.take("first" if is_first else "", "for me" if reading.carried is None else "")
         if not _at_joint(reading):
             raise _refusal(reading, at)
         if words.take("after"):
@@ -122,8 +95,9 @@ def _read_one(reading: Reading) -> bool:
     if keeps_out(reading):
         if words.take("while"):
             _plain(words)
+            return read_clause(reading)
         return True
-    if words.take("while"):
+    if words.take("while", "but"):
         return keeps_out(reading)
     return read_clause(reading)
 
@@ -131,7 +105,7 @@ def _read_one(reading: Reading) -> bool:
 def _at_joint(reading: Reading) -> bool:
     """Whether the clause is over: no word of it is left. What only rounds it off is taken."""
     words = reading.words
-    while words.take(*_AFTERTHOUGHTS):
+    while words.take(*verbs.AFTERTHOUGHTS):
         pass
     if words.next() in ("", *_MARKS, ",", "and", "then", "after", "finally", "afterwards"):
         return True
@@ -178,13 +152,13 @@ def _put_first(reading: Reading, begun: int) -> None:
 
 def _plain(words: Words) -> None:
     """A verb in -ing at the cursor, as the plain verb."""
-    if words.next() in _GERUNDS:
-        words.tokens[words.at] = _GERUNDS[words.next()]
+    if words.next() in verbs.GERUNDS:
+        words.tokens[words.at] = verbs.GERUNDS[words.next()]
 
 
 def _skip_joints(words: Words) -> bool:
     """Takes marks, joining words and politeness between clauses. Whether anything follows."""
-    while words.take(*_JOINTS, *_POLITE, *_MARKS, '"', "'"):
+    while words.take(*verbs.JOINTS, *verbs.POLITE, *_MARKS, '"', "'"):
         pass
     return bool(words.next())
 
@@ -196,11 +170,11 @@ def _task(text: str, reading: Reading, capabilities: Capabilities) -> Task:
         )
     if reading.seeks_people and not any(is_person(g.reference) for g in reading.subgoals):
         reading.add(Action.GO, HURT_PEOPLE)
-    if not reading.subgoals and text and not (reading.avoid or reading.keep_away):
+    if not reading.subgoals and reading.took_off:
         reading.add(Action.GO, reading.home())
     if not reading.subgoals:
         raise InstructionError(
-            f"'{text.strip()}' says what to avoid but not what to do: add a step, as in 'go to the red box'"
+            f"'{text.strip()}' says nothing that is to be done: add a step, as in 'go to the red box'"
         )
     for subgoal in reading.subgoals:
         _check_capable(subgoal, capabilities)
@@ -218,12 +192,13 @@ def _check_capable(subgoal: SubGoal, capabilities: Capabilities) -> None:
     if subgoal.action not in capabilities.actions:
         raise InstructionError(
             f"'{_DOING[subgoal.action]} {subgoal.reference.phrase}' cannot be done: the vehicle can only "
-            f"{', '.join(sorted(_DOING[a] for a in capabilities.actions))}. Change the instruction or the vehicle."
+            f"{', '.join(sorted(_DOING[a] for a in capabilities.actions))}. Change the instruction or the vehicle.",
+            word=_DOING[subgoal.action].split()[0],
         )
 
 
 def _refusal(reading: Reading, begun: int) -> InstructionError:
-    """Names the word that is in the way: one that is known to be beyond the grammar, else the first that fits nowhere."""
+    """Names the word in the way: one that is known to be beyond the grammar, else the first that fits nowhere."""
     words = reading.words
     tokens = words.tokens
     end = next((i for i in range(max(words.at, begun), len(tokens)) if tokens[i] in _MARKS), len(tokens))
@@ -235,9 +210,9 @@ def _refusal(reading: Reading, begun: int) -> InstructionError:
     said = " ".join(clause)
     done = ", then ".join(f"{_DOING[g.action]} {g.reference.phrase}" for g in reading.subgoals) or "nothing yet"
     return InstructionError(
-        f"'{said}' is not understood because of '{word}': {reason}. Understood so far: {done}. Say it with one of: go to, "
-        "find, pick up, bring … to, look into, search … for, count, photograph, report what you see, check whether anyone "
-        "is hurt.",
+        f"'{said}' is not understood because of '{word}': {reason}. Understood so far: {done}. Say it with one of: "
+        "go to, find, pick up, bring … to, look into, search … for, count, photograph, report what you see, "
+        "check whether anyone is hurt.",
         word=word,
         reason=reason,
     )

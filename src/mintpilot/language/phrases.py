@@ -5,12 +5,13 @@ from __future__ import annotations
 import re
 from collections.abc import Collection
 from dataclasses import dataclass, field
+from typing import NoReturn
 
 from mintpilot.core.errors import InputError
 from mintpilot.core.geometry import Vec3
 from mintpilot.core.observation import Attribute
 from mintpilot.core.task import Reference
-from mintpilot.language import lexicon
+from mintpilot.language import lexicon, verbs
 from mintpilot.language.lexicon import singular
 
 DEFAULT_HEIGHT_M = 1.5
@@ -18,25 +19,29 @@ DEFAULT_HEIGHT_M = 1.5
 _TOKEN = re.compile(r"\d+(?:\.\d+)?|[^\W\d_]+(?:['-][^\W\d_]+)*|[^\w\s]|\S")
 _HESITATIONS = ("um", "uh", "er", "erm", "hm", "uhm")
 _NUMBER = re.compile(r"\d+(?:\.\d+)?")
-_NEAR = (
-    "next to", "close to", "in front of", "on top of", "beside", "near", "by", "at", "behind", "under", "underneath",
-    "above", "over", "on", "opposite",
-)  # fmt: skip
-_SIDES = tuple(
-    f"{to} {the} {side}{hand}"
-    for to in ("on", "to", "at")
-    for the in ("the", "your", "its")
-    for side in ("left", "right")
-    for hand in (" hand side", "-hand side", " side", "")
-)
-_THAT_IS = ("that is", "which is", "who is", "that's", "who's", "that are", "who are", "lying", "standing", "located",
-            "sitting", "which lies", "that lies")  # fmt: skip
-_HOLDING = ("that contains", "that holds", "which contains", "which holds", "containing", "holding", "with")
-_CLOTHES = ("wearing", "dressed in", "in")
 _PERSON = "person"
 
 
-class Unread(Exception):
+class InstructionError(InputError):
+    """An instruction that is not understood.
+
+    Attributes:
+        word: the word that has no part in any reading; empty where it is not one word.
+        reason: why it is refused.
+    """
+
+    def __init__(self, message: str, *, word: str = "", reason: str = "") -> None:
+        super().__init__(message)
+        self.word = word
+        self.reason = reason or message
+
+
+def refuse(word: str, reason: str) -> NoReturn:
+    """Raises `InstructionError`: the word or phrase, and what is wrong with it."""
+    raise InstructionError(f"'{word}' {reason}", word=word, reason=reason)
+
+
+class Unread(Exception):  # noqa: N818
     """The words do not fit here. Tried further up in another way, and refused in the end."""
 
 
@@ -48,6 +53,8 @@ class Words:
     known: Collection[str] = ()
     """Words of the map, which may name things besides those of the lexicon."""
     at: int = 0
+    open: bool = False
+    """Whether one unknown noun may stand here."""
     furthest: int = field(default=0, init=False)
     """The furthest word that anything was tried at: the one that is in the way where nothing fits."""
 
@@ -75,9 +82,15 @@ class Words:
         self.at = at
         self.furthest = max(self.furthest, at)
 
-    def fail(self) -> str:
+    def fail(self) -> NoReturn:
         """Raises `Unread`."""
         raise Unread
+
+    def said(self, start: int) -> str:
+        """The words from there to the cursor."""
+        first, *rest = self.tokens[start : self.at]
+        first = "the" if first in ("this", "that", "these", "those") else first
+        return " ".join((first, *rest)).replace("first-aid", "first aid")
 
     def number(self) -> float | None:
         """Takes a number in digits, its sign before it."""
@@ -92,7 +105,8 @@ class Words:
 def words_of(text: str) -> list[str]:
     """Words, numbers and marks of an instruction, in lower case."""
     plain = text.replace("\N{RIGHT SINGLE QUOTATION MARK}", "'").replace("\N{LEFT SINGLE QUOTATION MARK}", "'")
-    return [word for word in _TOKEN.findall(plain.lower()) if word not in _HESITATIONS]
+    plain = plain.lower().replace("first aid", "first-aid")
+    return [word for word in _TOKEN.findall(plain) if word not in _HESITATIONS]
 
 
 def noun_phrase(words: Words, *, tail: bool = True, before: Reference | None = None) -> Reference:
@@ -117,26 +131,24 @@ def noun_phrase(words: Words, *, tail: bool = True, before: Reference | None = N
     first = words.at
     attributes = [*said, *more]
     attributes += _whereabouts(words, label) if tail else []
-    phrase = " ".join(words.tokens[start : words.at])
-    if words.tokens[start] in ("this", "that", "these", "those"):
-        phrase = " ".join(("the", *words.tokens[start + 1 : words.at]))
+    phrase = words.said(start)
     # A postponed adjective belongs before the noun: someone hurt.
     if words.at == first and noun in lexicon.ANYBODY | {"people"} and words.next() in lexicon.ADJECTIVES:
         attributes.append(_attribute(words.next()))
         words.move(words.at + 1)
-        phrase = " ".join(words.tokens[start : words.at])
+        phrase = words.said(start)
     return Reference(phrase=phrase, label=label, attributes=tuple(attributes), every=bool(every) or plural)
 
 
 def parse_phrase(phrase: str, known: Collection[str] = ()) -> Reference:
     """What a noun phrase by itself means, e.g. ``the small red box next to the rack``. Raises `InputError`."""
-    words = Words(words_of(phrase), known)
+    words = Words(words_of(phrase), known, open=True)
     try:
         found = noun_phrase(words)
     except Unread:
         found = None
     if found is None or words.next():
-        raise InputError(f"'{phrase}' is not understood as one thing: name it by what it looks like and where it is")
+        refuse(phrase, "is not understood as one thing: name it by what it looks like and where it is")
     return found
 
 
@@ -158,12 +170,14 @@ def _core(words: Words, has_article: bool, before: Reference | None) -> tuple[li
     if not nouns and words.next() in ("one", "ones") and before is not None and adjectives and before.label:
         words.move(words.at + 1)
         return [_attribute(word) for word in adjectives], "one"
-    if not nouns and has_article and _may_be_noun(words.next()):
+    if not nouns and has_article and words.open and _may_be_noun(words.next()):
         nouns.append(words.next())
         words.move(words.at + 1)
     if not nouns:
         words.fail()
     *compound, noun = nouns
+    if noun in lexicon.ROOMS and compound:
+        return [*map(_attribute, adjectives), Attribute(name="kind", value=" ".join((*compound, singular(noun))))], noun
     return [*(_attribute(word) for word in adjectives), *(Attribute(name="", value=word) for word in compound)], noun
 
 
@@ -178,8 +192,8 @@ def _names_more(words: Words) -> bool:
 
 
 def _is_noun(words: Words, word: str) -> bool:
-    if word in lexicon.ROOM_WORDS:
-        return words.next(1) in lexicon.ROOMS
+    if word in lexicon.ROOM_WORDS and words.next(1) in lexicon.ROOMS:
+        return True
     names = lexicon.NOUNS | lexicon.PEOPLE | lexicon.ANYBODY | lexicon.ROLES | lexicon.ROOMS | lexicon.ROOM_KINDS
     names |= lexicon.VENUES
     return word in names or singular(word) in names or word in words.known or singular(word) in words.known
@@ -187,7 +201,7 @@ def _is_noun(words: Words, word: str) -> bool:
 
 def _may_be_noun(word: str) -> bool:
     """Whether an unknown word may be taken for a noun: letters only, and no word that the grammar knows otherwise."""
-    taken = lexicon.ADJECTIVES.keys() | lexicon.PLAIN_ADJECTIVES | lexicon.REASONS.keys() | GRAMMAR
+    taken = lexicon.ADJECTIVES.keys() | lexicon.PLAIN_ADJECTIVES | lexicon.REASONS.keys() | lexicon.GRAMMAR
     return word.isascii() and word.isalpha() and len(word) > 2 and word not in taken
 
 
@@ -196,7 +210,7 @@ def _label(noun: str, before: Reference | None) -> tuple[str, tuple[Attribute, .
     if noun == "one" and before is not None:
         return before.label, (), False
     if noun in lexicon.ROOM_KINDS or singular(noun) in lexicon.ROOM_KINDS:
-        return "room", (Attribute(name="", value=singular(noun)),), singular(noun) != noun
+        return "room", (Attribute(name="kind", value=singular(noun)),), singular(noun) != noun
     if noun in lexicon.ROOMS:
         return "room", (), singular(noun) != noun
     if noun in lexicon.ANYBODY:
@@ -211,7 +225,7 @@ def _whereabouts(words: Words, label: str) -> list[Attribute]:
     found: list[Attribute] = []
     while True:
         start = words.at
-        words.take(*_THAT_IS)
+        words.take(*verbs.THAT_IS)
         words.take("somewhere")
         try:
             attribute = _one_tail(words, label, joined=words.at > start)
@@ -224,14 +238,14 @@ def _whereabouts(words: Words, label: str) -> list[Attribute]:
 
 
 def _one_tail(words: Words, label: str, *, joined: bool) -> Attribute | None:
-    if side := words.take(*_SIDES):
+    if side := words.take(*verbs.SIDES):
         return Attribute(name="side", value="left" if "left" in side else "right")
     if joined and words.next() in lexicon.ADJECTIVES and not _names_more(words):
         words.move(words.at + 1)
         return _attribute(words.tokens[words.at - 1])
     if label == _PERSON and (worn := _clothes(words)) is not None:
         return worn
-    if words.take(*_HOLDING):
+    if words.take(*verbs.HOLDING):
         thing = noun_phrase(words, tail=False)
         if thing.position_m is not None:
             words.fail()
@@ -244,9 +258,9 @@ def _one_tail(words: Words, label: str, *, joined: bool) -> Attribute | None:
         return Attribute(name="", value="")
     if words.next() in ("at", "on") and (_NUMBER.fullmatch(words.next(1)) or words.next(1) == "a"):
         return None  # at 2 m, at a height of 2 m
-    if words.take(*_NEAR):
+    if words.take(*verbs.NEAR):
         mark = noun_phrase(words, tail=False)
-        if mark.position_m is not None or mark.every or mark.label == "room" and not mark.attributes:
+        if mark.position_m is not None or mark.every or (mark.label == "room" and not mark.attributes):
             words.fail()
         return Attribute(name="near", value=mark.phrase)
     return None
@@ -255,7 +269,7 @@ def _one_tail(words: Words, label: str, *, joined: bool) -> Attribute | None:
 def _clothes(words: Words) -> Attribute | None:
     """``wearing a helmet``, ``in the blue jacket``, ``in red``; None, and nothing taken, where no clothes follow."""
     start = words.at
-    if not words.take(*_CLOTHES):
+    if not words.take(*verbs.DRESSED):
         return None
     first = words.at
     words.take(*lexicon.DETERMINERS)
@@ -295,27 +309,10 @@ def _position(words: Words) -> Vec3 | None:
 
 
 def _attribute(word: str) -> Attribute:
-    name, value = lexicon.ADJECTIVES.get(word, ("", word))
+    name, value = lexicon.ADJECTIVES.get(word, ("", word.replace("-", " ")))
     return Attribute(name=name, value=value)
 
 
 def _bare(phrase: str) -> str:
     first, _, rest = phrase.partition(" ")
     return rest if first in lexicon.DETERMINERS and rest else phrase
-
-
-GRAMMAR = frozenset(
-    """
-    go fly move head travel proceed navigate come get return walk hover continue to over straight directly back up on
-    towards toward above near by at inside into in out off from and then next finally also later afterwards find locate
-    search look for seek track down spot check inspect examine scan sweep visit approach reach see whether is are there
-    was be been does do did has have pick grab take collect fetch retrieve lift bring deliver transport give hand drop
-    put place leave set release onto beside behind under with wearing containing wait stay hold remain half launch rtl
-    home base start count how photograph snap picture photo image shoot report describe say what can possible avoid
-    avoiding skip bypass keep keeping staying steer clear away of through going flying passing entering enter pass limits
-    height altitude metre metres meter meters slowly carefully gently please could would will need want like should must
-    it them him her there this that these those which who whom whose where while until than so very too first last
-    open turn rotate set make try use let lets its his your yours mine ours am were being having had may might shall
-    """.split()
-)
-"""Words with a part in the grammar: no unknown noun is any of them."""
