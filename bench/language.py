@@ -38,7 +38,7 @@ def main() -> None:
         title="Language: the rules alone, and with models",
         command=f"python -m bench.language{named} --sample {options.sample}",
         how="As `mintpilot bench language` measures: the instructions in bench/data, the package's own answers. An "
-        "answer that was unsure or beside the point counts as understood when it is asked again. Models get a seeded sample.",
+        "answer that was unsure or beside the point counts as understood when it is asked again. Models get a sample.",
         tables=[Table(caption=caption, header=header, rows=rows) for caption, header, rows in language_tables(result)],
         notes=(*NOTES, *(f"Left out: {reason}" for reason in result.left_out)),
     )

@@ -12,6 +12,7 @@ from mintpilot.core.task import Action, Avoidance, Task, step_lines
 from mintpilot.language import Capabilities, InstructionError, parse_instruction, parse_phrase
 
 HOME_M = (0.0, 0.0, 1.0)
+SEEK = "look for everybody who needs help"
 
 
 def read(text: str) -> Task:
@@ -47,8 +48,8 @@ def read(text: str) -> Task:
         ("Check if anyone is stuck in the workshop", ["look into the workshop for anyone stuck"]),
         ("Look into the pantry and the attic", ["look into the pantry", "look into the attic"]),
         ("Look behind the blue door", ["look into the room behind the blue door"]),
-        ("Find the trapped miner and see if anybody else is hurt", None),
-        ("Make sure nobody is left behind", ["look for everybody who needs help"]),
+        ("Find the trapped miner and see if anybody else is hurt", ["go to the trapped miner", SEEK]),
+        ("Make sure nobody is left behind", [SEEK]),
         ("Count the chairs", ["count the chairs"]),
         ("How many people are in the library?", ["count people in the library"]),
         ("Take a photo of the statue", ["photograph the statue"]),
@@ -124,7 +125,8 @@ def test_a_word_that_is_not_understood_refuses_and_is_named(text: str, word: str
         "Go to the box next to the rack and the gate", "Take a selfie", "Give the man a hand", "Hello there",
         "Find the nurse and the dog and photograph them", "Check the battery", "Go to the lamp at 5 pm",
         "Go to the lamp at 3 m/s", "Count the people and the boxes", "Bring the cup to the nurse and the pilot",
-        "Pick up the cup and the plate", "There is a fire. Go to the lamp", "Avoid the smoke", "Stay 0 m away from people",
+        "Pick up the cup and the plate", "There is a fire. Go to the lamp", "Avoid the smoke",
+        "Stay 0 m away from people and go to the lamp",
         "go to the box and " * 400 + "go to the box", "Go to the lamp and the sofa at 3 m",
     ],
 )  # fmt: skip
@@ -134,9 +136,8 @@ def test_what_is_unclear_or_impossible_is_refused(text: str) -> None:
 
 
 def test_a_wish_may_be_given_up_and_an_order_not() -> None:
-    assert read("Skip the smoke if you can and go to the hut").avoid == (
-        Avoidance(kind=RegionKind.SMOKE, strict=False),
-    )
+    wish = Avoidance(kind=RegionKind.SMOKE, strict=False)
+    assert read("Skip the smoke if you can and go to the hut").avoid == (wish,)
     assert read("Never enter the smoke. Go to the hut").avoid == (Avoidance(kind=RegionKind.SMOKE),)
 
 
@@ -215,54 +216,14 @@ def test_a_word_that_turns_the_meaning_round_refuses_wherever_it_stands(
         read(" ".join((*words[:at], word, *words[at:])))
 
 
-VOCABULARY = st.sampled_from(
-    [
-        "go",
-        "to",
-        "the",
-        "box",
-        "and",
-        ",",
-        ".",
-        ";",
-        "(",
-        "3",
-        "it",
-        "or",
-        "red",
-        "bring",
-        "rooms",
-        "every",
-        "if",
-        "smoke",
-        "avoid",
-        "check",
-        "anyone",
-        "from",
-        "pick",
-        "up",
-        "at",
-        "2",
-        "m",
-        "stay",
-        "away",
-        "them",
-        "there",
-        "is",
-        "hover",
-        "in",
-        "kitchen",
-        "for",
-        "seconds",
-        "before",
-        "after",
-        "you",
-    ]
+VOCABULARY = (
+    "go to|the|box|and|,|.|;|(|3|it|or|red|bring|rooms|every|if|smoke|avoid|check|anyone|from|pick up|at 2 m|stay away|"
+    "them|there|is|hover|in|kitchen|for|seconds|before|after|you"
 )
 
 
 @settings(deadline=None, max_examples=300)
-@given(st.text(max_size=80) | st.lists(VOCABULARY, max_size=14).map(" ".join))
+@given(st.text(max_size=80) | st.lists(st.sampled_from(VOCABULARY.split("|")), max_size=14).map(" ".join))
 def test_any_text_is_a_task_or_a_reason(text: str) -> None:
     try:
         task = read(text)

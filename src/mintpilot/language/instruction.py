@@ -206,7 +206,7 @@ def _refusal(reading: Reading, begun: int) -> InstructionError:
     word = next((w for w in clause if w in lexicon.REASONS), "")
     reason = lexicon.REASONS.get(word, "it has no part in anything that is understood here")
     if not word:
-        word = tokens[min(words.furthest, len(tokens) - 1)]
+        word = tokens[max(begun, min(words.furthest, len(tokens) - 1))]
     said = " ".join(clause)
     done = ", then ".join(f"{_DOING[g.action]} {g.reference.phrase}" for g in reading.subgoals) or "nothing yet"
     return InstructionError(

@@ -36,7 +36,7 @@ def _keep_out(reading: Reading) -> None:
         return
     for reference in _kept_out(reading):
         _note(reading, reference, distance_m, strict=not wish)
-    if words.take(*verbs.WISH):
+    if words.take(*verbs.WISH, *(f", {wish}" for wish in verbs.WISH)):
         reading.avoid = [replace(a, strict=False) for a in reading.avoid]
 
 

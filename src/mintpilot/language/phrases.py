@@ -170,7 +170,7 @@ def _core(words: Words, has_article: bool, before: Reference | None) -> tuple[li
     if not nouns and words.next() in ("one", "ones") and before is not None and adjectives and before.label:
         words.move(words.at + 1)
         return [_attribute(word) for word in adjectives], "one"
-    if not nouns and has_article and words.open and _may_be_noun(words.next()):
+    if not nouns and has_article and words.open and _may_be_noun(words.next()) and not _is_noun(words, words.next(1)):
         nouns.append(words.next())
         words.move(words.at + 1)
     if not nouns:
