@@ -29,7 +29,7 @@ def read(text: str) -> Task:
         ("take off, fly to the mast and return to launch", ["go to the mast", "go to the start"]),
         ("RTL", ["go to the start"]),
         ("Hover at the fountain for half a minute", ["go to the fountain, stay there for 30 s"]),
-        ("Go to 2, 5 at a height of 3 m", ["go to 2 , 5, at a height of 3 m"]),
+        ("Go to 2, 5 at a height of 3 m", ["go to 2, 5, at a height of 3 m"]),
         ("Grab the rope from the bench", ["pick up the rope from the bench"]),
         ("Get the pills out of the white cabinet", None),
         ("Hand the torch to the nurse", ["pick up the torch", "bring the torch to the nurse"]),

@@ -18,7 +18,7 @@ def somebody_in(reading: Reading) -> None:
     """``is there anybody in the kitchen``, ``check whether anyone is trapped in the office``."""
     words = reading.words
     if words.take(*verbs.CHECK):
-        words.need("if", "whether", "that", "for")
+        words.need("if", "whether", "for")
         words.need(*verbs.SOMEBODY)
         words.take("is", "are")
     else:
@@ -36,16 +36,17 @@ def somebody_in(reading: Reading) -> None:
 def seek(reading: Reading) -> None:
     """``check whether anyone else is hurt``, ``look for anybody who needs help``."""
     words, at = reading.words, reading.words.at
-    if (words.take(*verbs.FIND) and words.take(*verbs.SOMEBODY)) or (
-        reading.subgoals and words.take(*verbs.SOMEBODY) and words.tokens[words.at - 1] == "else"
+    if (words.take(*verbs.FIND) and words.take(*verbs.EVERYBODY)) or (
+        reading.subgoals and words.take(*verbs.EVERYBODY) and words.tokens[words.at - 1] == "else"
     ):
         words.need(*verbs.HELP)
     else:
         words.at = at
-        words.need(*verbs.CHECK)
-        words.take("if", "whether", "that")
-        nobody = words.take(*verbs.NOBODY)
+        nobody = bool(words.take(*verbs.ENSURE) and words.take(*verbs.NOBODY))
         if not nobody:
+            words.at = at
+            words.need(*verbs.CHECK)
+            words.need("if", "whether", "for")
             words.need(*verbs.SOMEBODY)
         if not words.take(*verbs.HELP) and words.take("is", "are"):
             words.need(*verbs.STATES, *(("missing",) if nobody else ()))

@@ -8,13 +8,14 @@ from __future__ import annotations
 
 from collections.abc import Collection
 from dataclasses import dataclass
+from itertools import product
 
 from mintpilot.core.geometry import Vec3
 from mintpilot.core.task import Action, SubGoal, Task
 from mintpilot.language import lexicon, verbs
 from mintpilot.language.clauses import HURT_PEOPLE, Reading, is_person
 from mintpilot.language.keeping_out import keeps_out
-from mintpilot.language.phrases import InstructionError, Words, words_of
+from mintpilot.language.phrases import InstructionError, Words, refuse, words_of
 from mintpilot.language.rules import read_clause
 
 _LONGEST = 600
@@ -176,6 +177,10 @@ def _task(text: str, reading: Reading, capabilities: Capabilities) -> Task:
         raise InstructionError(
             f"'{text.strip()}' says nothing that is to be done: add a step, as in 'go to the red box'"
         )
+    for subgoal, keep in product(reading.subgoals, reading.keep_away):
+        same = keep.reference.label == subgoal.reference.label != "person"
+        if same and keep.reference.attributes == subgoal.reference.attributes:
+            refuse(keep.reference.phrase, "cannot be gone to and stayed away from: leave one of them out")
     for subgoal in reading.subgoals:
         _check_capable(subgoal, capabilities)
     return Task(

@@ -114,8 +114,8 @@ def _is_faithful(form: Steps, text: str, known: Collection[str]) -> bool:
         return True
     own, steps = {singular(w) for w in said}, {singular(w) for w in given}
     actions = {word for step in form.steps for word in _verbs_of(step)}
-    added = {w for w in steps - own if w.isalpha()} - _FILLERS
-    left_out = {w for w in own - steps if w.isalpha()} - _FILLERS - actions
+    added = {w for w in given if w.isalpha() and w not in _FILLERS and singular(w) not in own}
+    left_out = {w for w in said if w.isalpha() and w not in _FILLERS and singular(w) not in steps | actions}
     return not added and not left_out
 
 

@@ -123,7 +123,8 @@ def noun_phrase(words: Words, *, tail: bool = True, before: Reference | None = N
     start = words.at
     position_m = _position(words)
     if position_m is not None:
-        return Reference(phrase=" ".join(words.tokens[start : words.at]), position_m=position_m)
+        numbers = [float(w) for w in words.said(start).replace("- ", "-").split() if w.lstrip("-")[:1].isdecimal()]
+        return Reference(phrase=", ".join(f"{number:g}" for number in numbers), position_m=position_m)
     every = _quantifier(words)
     article = words.take(*lexicon.DETERMINERS) if not every or words.next() in ("the", "my", "our", "these") else every
     said, noun = _core(words, bool(article), before)
@@ -245,10 +246,12 @@ def _one_tail(words: Words, label: str, *, joined: bool) -> Attribute | None:
         return _attribute(words.tokens[words.at - 1])
     if label == _PERSON and (worn := _clothes(words)) is not None:
         return worn
-    if words.take(*verbs.HOLDING):
+    if held := words.take(*verbs.HOLDING):
         thing = noun_phrase(words, tail=False)
-        if thing.position_m is not None:
+        if thing.position_m is not None or thing.label == _PERSON:
             words.fail()
+        if held == "with" and label in lexicon.FIXED - {"door", "gate"}:
+            words.fail()  # go to the tower with the box: who has the box?
         return Attribute(name="" if label in (_PERSON, "room") else "contents", value=_bare(thing.phrase))
     if words.take("in", "inside"):
         words.take("the", "this", "that", "our")

@@ -41,7 +41,8 @@ STARTS = _phrases(
 )
 HOME = ("home", "back", "back home", *(f"{back}to {start}" for back in ("", "back ") for start in STARTS))
 NOBODY = _phrases("""nobody | no one | nobody else | no one else""")
-CHECK = _phrases("""check | see | find out | make sure | look | determine | verify | make certain | ensure""")
+CHECK = _phrases("""check | see | find out | look | determine | verify""")
+ENSURE = _phrases("""make sure | make sure that | make certain | ensure | ensure that | check that | see that""")
 STATES = _phrases(
     """hurt | injured | wounded | trapped | in danger | left behind | in need of help | unconscious | stuck | in
     trouble"""
@@ -65,9 +66,10 @@ ADVERBS = (*_phrases("straight | directly | over | up | back | on | out"), *SLOW
 SOMEBODY = tuple(
     f"{there}{who}{other}"
     for there in ("", "there is ", "there's ", "there are ")
-    for who in (*sorted(ANYBODY), "any people", "people", "any person")
+    for who in (*sorted(ANYBODY - {"everyone", "everybody"}), "any people", "people", "any person")
     for other in ("", " else")
 )
+EVERYBODY = (*SOMEBODY, "everyone", "everybody", "everyone else", "everybody else")
 PICTURE = tuple(
     f"{verb} {one}{picture}"
     for verb in ("take", "make", "get", "snap", "shoot")
@@ -95,7 +97,7 @@ GERUNDS = {word: {"moving": "move", "taking": "take"}.get(word, word.removesuffi
 """A verb in -ing → the plain verb."""
 NEAR = _phrases(
     """next to | close to | in front of | on top of | beside | near | by | at | behind | under | underneath | above |
-    over | on | opposite"""
+    on | opposite"""
 )
 THAT_IS = _phrases(
     """that is | which is | who is | that's | who's | that are | who are | lying | standing | located | sitting | which
