@@ -144,7 +144,7 @@ class _CrewContext(AbstractContextManager[Crew]):
             else:
                 first = survey(mission, mission.survey, vehicle=simulator, eyes=eyes, recorder=self._recorder)
             simulator.begin_mission()
-            return with_keep_away(first, self._world.task, start_m=mission.start_m, limits=mission.limits)
+            return with_keep_away(first, self._world.task, start_m=mission.start_m)
 
         return fly
 
@@ -193,9 +193,7 @@ class KeepAwayEyes(Eyes):
         """See `Eyes.look`."""
         mission = self._world.mission
         newer = self._eyes.look(previous)
-        return with_keep_away(
-            newer, self._world.task, start_m=mission.start_m, limits=mission.limits, previous=previous
-        )
+        return with_keep_away(newer, self._world.task, start_m=mission.start_m, previous=previous)
 
     def flown(self, points_m: Floats, radius_m: float) -> None:
         """See `Eyes.flown`."""

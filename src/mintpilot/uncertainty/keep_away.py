@@ -16,7 +16,6 @@ from scipy.ndimage import distance_transform_edt
 
 from mintpilot.core.geometry import Bools, Box, Ints, Vec3
 from mintpilot.core.observation import RegionKind
-from mintpilot.core.plan import VehicleLimits
 from mintpilot.core.semantic_map import Knowledge, Region, SemanticMap
 from mintpilot.core.task import Action, KeepAway, Task
 from mintpilot.uncertainty.matching import View, match
@@ -24,22 +23,18 @@ from mintpilot.uncertainty.things import Thing, things_of
 
 PREFIX = "keep-away-"
 """Ids of these regions begin so."""
-_LEAST_M = 0.05
 
 
-def with_keep_away(
-    map: SemanticMap, task: Task, *, start_m: Vec3, limits: VehicleLimits, previous: SemanticMap | None = None
-) -> SemanticMap:
+def with_keep_away(map: SemanticMap, task: Task, *, start_m: Vec3, previous: SemanticMap | None = None) -> SemanticMap:
     """The map with one region for each distance to be kept; those that are on it already are drawn anew.
 
-    The thing that a step goes to is no reason to stay away from itself. Where the drone starts nearer than wished, the
-    distance from that thing is what the start leaves.
+    The thing that a step goes to is no reason to stay away from itself. Where the drone starts nearer than wished,
+    nothing can be flown so, and it asks.
 
     Args:
         map: what is believed of the world.
         task: its ``keep_away`` says from what, and how far.
-        start_m: where the mission starts, metres.
-        limits: size of the vehicle, for the start.
+        start_m: where the mission starts, metres; ``nearest`` and ``left`` are judged from there.
         previous: the map before: a region that has not grown since keeps what is known of it.
     """
     if not task.keep_away:
@@ -49,7 +44,7 @@ def with_keep_away(
     view = View(start_m=start_m, towards_m=map.frame.box.centre_m)
     added = []
     for number, wish in enumerate(task.keep_away, start=1):
-        cells = _cells(wish, bare, task, view, limits)
+        cells = _cells(wish, bare, task, view)
         if not cells.size:
             continue
         name = f"{PREFIX}{number}"
@@ -67,7 +62,7 @@ def with_keep_away(
     return replace(bare, regions=(*bare.regions, *added))
 
 
-def _cells(wish: KeepAway, map: SemanticMap, task: Task, view: View, limits: VehicleLimits) -> Ints:
+def _cells(wish: KeepAway, map: SemanticMap, task: Task, view: View) -> Ints:
     """Flat indices, sorted, of all cells any part of which is nearer than the distance."""
     near = np.zeros(map.frame.shape, bool)
     for region in map.regions:
@@ -76,13 +71,8 @@ def _cells(wish: KeepAway, map: SemanticMap, task: Task, view: View, limits: Veh
     things = things_of(map)
     goals = _goals(task, things, view)
     for thing in _meant(wish, things, view):
-        if thing.id in goals:
-            continue
-        box = _box(thing)
-        spare_m = _gap_m(box, view.start_m, flat=map.frame.is_flat) - limits.radius_m - limits.margin_m
-        distance_m = min(wish.distance_m, spare_m - math.sqrt(3) * map.frame.resolution_m)
-        if distance_m >= _LEAST_M:
-            near |= _around_box(map, box, distance_m)
+        if thing.id not in goals:
+            near |= _around_box(map, _box(thing), wish.distance_m)
     return np.flatnonzero(near).astype(np.int64)
 
 
@@ -110,11 +100,6 @@ def _box(thing: Thing) -> Box:
     half = tuple(edge / 2 for edge in thing.size_m)
     (x, y, z), (dx, dy, dz) = thing.position_m, half
     return Box(lo_m=(x - dx, y - dy, z - dz), hi_m=(x + dx, y + dy, z + dz))
-
-
-def _gap_m(box: Box, point_m: Vec3, *, flat: bool) -> float:
-    gaps = [max(lo - x, 0.0, x - hi) for lo, x, hi in zip(box.lo_m, point_m, box.hi_m, strict=True)]
-    return math.hypot(*(gaps[:2] if flat else gaps))
 
 
 def _around_box(map: SemanticMap, box: Box, distance_m: float) -> Bools:
