@@ -18,6 +18,7 @@ DEFAULT_HEIGHT_M = 1.5
 """Height of a place that is given by two numbers only, metres."""
 _TOKEN = re.compile(r"\d+(?:\.\d+)?|[^\W\d_]+(?:['-][^\W\d_]+)*|[^\w\s]|\S")
 _HESITATIONS = ("um", "uh", "er", "erm", "hm", "uhm")
+_LARGEST = 1e6
 _NUMBER = re.compile(r"\d+(?:\.\d+)?")
 _PERSON = "person"
 
@@ -98,6 +99,8 @@ class Words:
         if not _NUMBER.fullmatch(self.next(int(sign))):
             return None
         value = float(self.next(int(sign)))
+        if value > _LARGEST:
+            return None
         self.move(self.at + 1 + sign)
         return -value if sign else value
 
