@@ -123,6 +123,8 @@ def test_a_word_that_is_not_understood_refuses_and_is_named(text: str, word: str
     [
         "", "12 34", "!!!", "the red box", "go", "Go to the hut now and then", "Go to the hut, then to the lake first",
         "Go to the box next to the rack and the gate", "Take a selfie", "Give the man a hand", "Hello there",
+        "Make sure everyone is injured", "Avoid the hut. Go to the hut.", "Go to the lamp over the bridge",
+        "Bring the cup with the nurse to the lamp", "Go to the tower with the box", "Take a picture",
         "Find the nurse and the dog and photograph them", "Check the battery", "Go to the lamp at 5 pm",
         "Go to the lamp at 3 m/s", "Count the people and the boxes", "Bring the cup to the nurse and the pilot",
         "Pick up the cup and the plate", "There is a fire. Go to the lamp", "Avoid the smoke",
