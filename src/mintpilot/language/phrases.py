@@ -251,7 +251,7 @@ def _one_tail(words: Words, label: str, *, joined: bool) -> Attribute | None:
         return worn
     if held := words.take(*verbs.HOLDING):
         thing = noun_phrase(words, tail=False)
-        if thing.position_m is not None or thing.label == _PERSON:
+        if thing.position_m is not None or thing.label in (_PERSON, *lexicon.ROLES):
             words.fail()
         if held == "with" and label in lexicon.FIXED - {"door", "gate"}:
             words.fail()  # go to the tower with the box: who has the box?
