@@ -209,13 +209,13 @@ SLANG = "There is a poor chap, the injured person; go to him"
 
 
 def test_a_model_reads_an_instruction_that_the_rules_refuse() -> None:
-    steps = FunctionModel(lambda _: '{"steps": ["go to the injured person"]}')
+    steps = FunctionModel(lambda _: '{"steps": [{"action": "go", "target": "the injured person"}]}')
     file = hall().model_copy(update={"instruction": SLANG})
     with pytest.raises(InputError, match="not understood"):
         run_mission(file, vehicle="kinematic")
     record = run_mission(file, vehicle="kinematic", llm=steps)
     assert (record.outcome, record.instruction) == (Outcome.SUCCESS, SLANG)
-    liar = FunctionModel(lambda _: '{"steps": ["go to the exit"]}')
+    liar = FunctionModel(lambda _: '{"steps": [{"action": "go", "target": "the exit"}]}')
     with pytest.raises(InputError, match="not understood"):
         run_mission(file, vehicle="kinematic", llm=liar)
 

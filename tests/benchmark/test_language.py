@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from mintpilot.benchmark.introplan import Scene, ambiguity, meant_by_model, meant_by_rules, read_scenes
-from mintpilot.benchmark.language_cases import QUESTIONS, AnswerCase, answer_cases, instruction_cases
+from mintpilot.benchmark.instruction_trials import read_rows, score, upper_bound
+from mintpilot.benchmark.language_cases import QUESTIONS, AnswerCase, answer_cases
 from mintpilot.benchmark.language_report import LanguageOptions, language_tables, measure_language
 from mintpilot.benchmark.language_trials import answer_all, sampled, word_all
 from mintpilot.cli.bench_language import bench_language
@@ -16,21 +16,13 @@ from mintpilot.cli.exits import ExitCode
 from mintpilot.core.errors import InputError, MissingPartError
 from mintpilot.core.ports import LanguageModel
 from mintpilot.language.doubles import FunctionModel, NoModel
+from mintpilot.language.instruction import parse_instruction
 
-SCENES = """0
-Task: Bring me the sponge.
-Possible objects: clean sponge, dirty sponge with food residue
-Scene objects: clean sponge, dirty sponge with food residue, Pepsi
-
-1
-Task: Put the bowl in the microwave.
-Possible objects: plastic bowl
-Scene objects: plastic bowl, microwave
-
-2
-Task: Give me the rice chips.
-Possible objects: rice chips
-Scene objects: rice chips, kettle chips
+LIST = """within\tinstruction\treference
+yes\tPut the bowl in the microwave\tpick: bowl; deliver: bowl @ microwave
+yes\tAvoid the smoke and wait at the gate for 5 seconds\tgo: gate ~5; out: smoke
+yes\tJuggle the red box\tgo: red box
+no\tGo to any other box\t-
 """
 
 
@@ -39,9 +31,9 @@ def _missing() -> LanguageModel:
 
 
 @pytest.fixture
-def scenes(tmp_path: Path) -> Path:
-    file = tmp_path / "scenes.txt"
-    file.write_text(SCENES)
+def listed(tmp_path: Path) -> Path:
+    file = tmp_path / "list.tsv"
+    file.write_text(LIST)
     return file
 
 
@@ -51,7 +43,6 @@ def test_the_cases_are_many_and_of_every_kind() -> None:
     assert {(case.reading, case.question.text) for case in cases} >= {
         (reading, q.text) for reading in ("yes", "no", "unsure", "other", "command") for q in QUESTIONS.values()
     }
-    assert sum(len(group) for group in instruction_cases().values()) >= 100
 
 
 def test_a_false_yes_and_a_no_for_a_yes_are_counted() -> None:
@@ -81,51 +72,47 @@ def test_wordings_are_counted_as_the_check_lets_them_through() -> None:
     assert turned.speed.calls == turned.n
 
 
-def test_what_is_missing_is_told_and_the_rest_is_measured(scenes: Path) -> None:
+def test_what_is_missing_is_told_and_the_rest_is_measured(listed: Path) -> None:
     told: list[str] = []
-    result = measure_language(LanguageOptions(models={"gone": _missing}, instructions=scenes), told.append)
+    result = measure_language(LanguageOptions(models={"gone": _missing}, instructions=listed), told.append)
     assert [way.name for way in result.ways] == ["template"]
     assert result.ways[0].answered.false_guarded == 0
     assert result.left_out == ("gone: no model here: pip install something",)
     assert [caption for caption, _, _ in language_tables(result)] == [
         "Instructions",
         "Answers",
-        "Ambiguous instructions",
     ]
-
-
-def test_things_are_meant_by_kind_and_never_by_place(scenes: Path) -> None:
-    sponge, bowl, chips = read_scenes(scenes)
-    assert meant_by_rules(sponge) == {"clean sponge", "dirty sponge with food residue", "Pepsi"}
-    assert meant_by_rules(bowl) == {"plastic bowl"}
-    assert meant_by_rules(chips) == {"rice chips"}
-    shares = ambiguity("rules", "all", [sponge, bowl, chips], meant_by_rules)
-    assert (shares.n, round(shares.exact, 2), shares.over_ask, shares.over_step, shares.unsafe) == (3, 0.67, 0, 0, 0)
-
-
-def test_a_model_is_asked_where_the_instruction_names_nothing() -> None:
-    scene = Scene(task="Bring me a snack.", objects=("apple", "wrench"), possible=frozenset({"apple"}), number=0)
-    model = FunctionModel(lambda prompt: "yes" if prompt.rstrip().endswith("Thing: apple\nAnswer:") else "no")
-    assert meant_by_model(scene, model) == {"apple"}
-    assert meant_by_model(scene, NoModel()) == set(scene.objects)
 
 
 def test_a_file_that_is_none_is_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="cannot be read"):
-        read_scenes(tmp_path / "none")
+        read_rows(tmp_path / "none")
     (tmp_path / "empty").write_text("hello")
-    with pytest.raises(InputError, match="hold no block"):
-        read_scenes(tmp_path / "empty")
+    with pytest.raises(InputError, match="columns must be"):
+        read_rows(tmp_path / "empty")
 
 
-def test_the_command_prints_one_object_and_keeps_it(scenes: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    out = scenes.parent / "kept"
-    code = bench_language(["template"], instructions=scenes, sample=5, out=out, as_json=True)
+def test_readings_are_compared_with_their_references(listed: Path) -> None:
+    rows = read_rows(listed)
+    found = score(rows, lambda text: parse_instruction(text, home_m=(0.0, 0.0, 1.0)))
+    assert (found.n, found.within, found.right, found.wrong, found.refused) == (4, 3, 2, (), ("Juggle the red box",))
+    beside = score(rows, lambda _: parse_instruction("go to the blue box"))
+    assert (beside.right, len(beside.wrong)) == (0, 4)
+
+
+def test_the_bound_on_a_share_is_the_exact_one() -> None:
+    assert upper_bound(0, 300) == pytest.approx(1 - 0.05 ** (1 / 300))
+    assert upper_bound(4, 4) == 1.0
+
+
+def test_the_command_prints_one_object_and_keeps_it(listed: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    out = listed.parent / "kept"
+    code = bench_language(["template"], instructions=listed, sample=5, out=out, as_json=True)
     printed = json.loads(capsys.readouterr().out)
     assert code is ExitCode.SUCCESS
     assert printed == json.loads((out / "language.json").read_text())
-    assert printed["ways"][0]["parsed"]["as_something_else"] == 0
+    assert printed["ways"][0]["parsed"]["wrong"] == []
     assert bench_language(["template"], instructions=None, sample=5, out=None, as_json=False) is ExitCode.SUCCESS
-    assert "Left out: ambiguous instructions" in capsys.readouterr().out
+    assert "Left out: instructions" in capsys.readouterr().out
     with pytest.raises(InputError, match="must be 1 or more"):
         bench_language([], instructions=None, sample=0, out=None, as_json=True)

@@ -22,7 +22,7 @@ def test_the_page_has_examples() -> None:
 
 @pytest.mark.parametrize("text", EXAMPLES)
 def test_the_examples_are_understood(text: str) -> None:
-    assert parse_instruction(text).subgoals
+    assert parse_instruction(text, home_m=(0.0, 0.0, 1.0)).subgoals
 
 
 def test_the_answers_are_read_as_the_page_says() -> None:

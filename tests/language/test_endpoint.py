@@ -23,7 +23,7 @@ from mintpilot.language import gguf
 from mintpilot.language.answer_model import read_with_model
 from mintpilot.language.endpoint import EndpointModel, OutputMode
 from mintpilot.language.forms import AnswerReading, read_form
-from mintpilot.language.reading import parse_with_model
+from mintpilot.language.instruction_model import parse_with_model
 from mintpilot.language.wording import ModelWording
 
 from . import questions

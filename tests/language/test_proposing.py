@@ -14,8 +14,8 @@ from mintpilot.core.gap import PASSABLE, Assumptions, Joint
 from mintpilot.core.query import Combine
 from mintpilot.core.tree import Mint, Node, PlanClass
 from mintpilot.language.doubles import FunctionModel, NoModel
+from mintpilot.language.instruction_model import parse_with_model
 from mintpilot.language.proposing import propose_cuts
-from mintpilot.language.reading import parse_with_model
 
 from . import questions
 
@@ -113,17 +113,22 @@ def _agreeing(prompt: str) -> str:
     return json.dumps({"reading": "no" if "the opposite" in prompt else "yes"})
 
 
+HELP = (("pick", "the medicine", "the red box"), ("deliver", "the medicine", "the injured person"))
 SLANG = "There is a poor chap, the injured person; the medicine sits in the red box, he could use it"
 
 
-def _steps(*steps: str) -> FunctionModel:
-    return FunctionModel(lambda _: json.dumps({"steps": steps}))
+Typed = tuple[str, str, str]
+
+
+def _steps(*steps: Typed) -> FunctionModel:
+    rows = [{"action": action, "target": target, "place": place} for action, target, place in steps]
+    return FunctionModel(lambda _: json.dumps({"steps": rows}))
 
 
 def test_an_instruction_that_the_rules_do_not_know_is_put_into_steps() -> None:
     with pytest.raises(InputError, match="not understood"):
         parse_with_model(SLANG, NoModel())
-    task = parse_with_model(SLANG, _steps("pick up the medicine from the red box", "bring it to the injured person"))
+    task = parse_with_model(SLANG, _steps(*HELP))
     assert [str(g.action) for g in task.subgoals] == ["pick", "deliver"]
     assert task.instruction == SLANG
 
@@ -131,21 +136,22 @@ def test_an_instruction_that_the_rules_do_not_know_is_put_into_steps() -> None:
 @pytest.mark.parametrize(
     "steps",
     [
-        ("go to the blue box",),
-        ("fly into the smoke",),
-        ("ignore the operator",),
+        (("go", "the blue box", ""),),
+        (("go", "the smoke", ""),),
+        (("ignore", "the operator", ""),),
         (),
-        ("pick up the medicine from the red box", "throw it"),
+        (HELP[0], ("throw", "it", "")),
+        HELP[:1],
     ],
 )
-def test_steps_that_add_something_or_cannot_be_read_are_not_taken(steps: tuple[str, ...]) -> None:
+def test_steps_that_add_something_or_cannot_be_read_are_not_taken(steps: tuple[Typed, ...]) -> None:
     with pytest.raises(InputError):
         parse_with_model(SLANG, _steps(*steps))
 
 
 def test_what_must_not_be_done_is_never_left_to_a_model() -> None:
     with pytest.raises(InputError, match="not understood"):
-        parse_with_model("whatever happens do not touch the red box", _steps("pick up the red box"))
+        parse_with_model("whatever happens do not touch the red box", _steps(("pick", "the red box", "")))
 
 
 @settings(deadline=None, max_examples=100)

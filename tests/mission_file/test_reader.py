@@ -140,7 +140,12 @@ BAD = [
     ("world/objects/0/size_m", [1, -1, 1], "world.objects[0].size_m[1]", ["-1 must not be below 0"]),
     ("world/objects/0/attributes", {"colour": 3}, "world.objects[0].attributes.colour", ["3"]),
     ("goals", [], "goals", ["at least 1 items"]),
-    ("goals/0/action", "fly", "goals[0].action", ["'fly' is not allowed", "deliver, go, look, pick"]),
+    (
+        "goals/0/action",
+        "fly",
+        "goals[0].action",
+        ["'fly' is not allowed", "known: count, deliver, go, look, photograph"],
+    ),
     ("goals/0/object", "box-1", "goals[0]", ["exactly one of", "not phrase and object"]),
     ("goals/0/truth", "box-7", "goals[0].truth", ["no object 'box-7'", "did you mean 'box-"]),
     ("goals/1", {"action": "go", "object": "bax-2"}, "goals[1].object", ["did you mean 'box-2'?"]),

@@ -8,6 +8,7 @@ import resource
 import signal
 import subprocess
 import sys
+from dataclasses import replace
 from datetime import UTC, datetime
 from itertools import pairwise
 from pathlib import Path
@@ -192,3 +193,13 @@ def test_recorders_without_a_disk(make_events):
     for event in told:
         tee.record(event)
     assert tuple(memory.events) == tuple(other.events) == told
+
+
+def test_the_first_picture_at_a_stop_that_asks_for_one_is_kept_by_its_name(tmp_path, make_events):
+    told = make_events()
+    frame = next(e for e in told if type(e).__name__ == "FrameSeen")
+    leg = next(e for e in told if type(e).__name__ == "LegFlown")
+    with RunFolder(tmp_path) as folder:
+        for event in (frame, replace(leg, stop_id="photograph:2:box-1"), frame, frame, replace(leg, stop_id="go:3")):
+            folder.record(event)
+    assert [p.name for p in (tmp_path / "photographs").iterdir()] == ["photograph-2-box-1.jpg"]

@@ -94,6 +94,7 @@ def _planned(file: MissionFile, folder: Path, talk: Talk, choices: Choices, *, s
         mission=file.name,
         strategy=strategy_label(choices.strategy, choices.strategy_arguments),
         explanations=explanations(seen.first.situation, decision.mint),
+        task=world.task,
         question=question,
         seconds=seconds,
     )

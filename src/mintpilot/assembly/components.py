@@ -13,8 +13,11 @@ from mintpilot.assembly.registry import load
 from mintpilot.assembly.strategies import Argument, make_objective, make_strategy, strategy_label
 from mintpilot.assembly.talk import Talk
 from mintpilot.assembly.worlds import World
-from mintpilot.core.geometry import GridFrame
+from mintpilot.core.errors import InputError
+from mintpilot.core.geometry import Floats, GridFrame
 from mintpilot.core.ports import Operator, Perception, Recorder
+from mintpilot.core.semantic_map import SemanticMap
+from mintpilot.core.task import Action
 from mintpilot.elicitation.wording import word_question
 from mintpilot.interaction.scripted import ScriptedOperator
 from mintpilot.mapping.builder import MapBuilder
@@ -25,6 +28,7 @@ from mintpilot.mission_file.schema import OperatorSpec
 from mintpilot.simulation.kinematic import KinematicSimulator
 from mintpilot.simulation.mujoco_vehicle import MujocoSimulator
 from mintpilot.simulation.scene_map_source import SceneMapSource
+from mintpilot.uncertainty.keep_away import with_keep_away
 
 TAKE_OFF_CLEAR_M = 1.0
 """Free space around the hover point that whoever puts the drone down vouches for, metres."""
@@ -136,8 +140,15 @@ class _Components(AbstractContextManager[MissionComponents]):
             if surveys:
                 # Whoever puts the drone down vouches for the space around it: the camera never sees it.
                 builder.mark_flown(np.asarray([world.mission.start_m], float), TAKE_OFF_CLEAR_M)
-            source = CameraMapSource(camera=simulator, perception=perception, builder=builder, recorder=self._recorder)
+            camera = CameraMapSource(camera=simulator, perception=perception, builder=builder, recorder=self._recorder)
+            source: MapSource = KeepAwayMapSource(camera, world) if world.task.keep_away else camera
             return self._made(simulator, source, surveys=surveys, watch_map=True)
+        photographs = [g for g in world.task.subgoals if g.action is Action.PHOTOGRAPH]
+        if photographs:
+            raise InputError(
+                f"'photograph {photographs[0].reference.phrase}' cannot be done: this vehicle has no camera. "
+                "Fly with one that has, or leave the picture out."
+            )
         kinematic = KinematicSimulator(world.scene, world.rules, seed=world.seed)
         given: MapSource = GivenMap(world.map)
         if not world.is_map:
@@ -171,6 +182,33 @@ class _Components(AbstractContextManager[MissionComponents]):
             language_model=self._talk.model_name,
             seed=self._world.seed,
         )
+
+
+class KeepAwayMapSource(MapSource):
+    """Draws what is to be kept away from on every map that the drone makes.
+
+    Args:
+        source: makes the map.
+        world: says from what, and where the mission starts.
+    """
+
+    def __init__(self, source: MapSource, world: World) -> None:
+        self._source = source
+        self._world = world
+
+    def look(self) -> None:
+        """See `MapSource.look`."""
+        self._source.look()
+
+    def draw(self, previous: SemanticMap | None) -> SemanticMap:
+        """See `MapSource.draw`."""
+        mission = self._world.mission
+        newer = self._source.draw(previous)
+        return with_keep_away(newer, self._world.task, start_m=mission.start_m, previous=previous)
+
+    def flown(self, points_m: Floats, radius_m: float) -> None:
+        """See `MapSource.flown`."""
+        self._source.flown(points_m, radius_m)
 
 
 def map_builder(world: World) -> MapBuilder:

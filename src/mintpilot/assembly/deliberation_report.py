@@ -7,6 +7,7 @@ from pydantic import BaseModel, ConfigDict
 from mintpilot.core.gap import Assumptions, KnowledgeGap
 from mintpilot.core.ports import Ask, Fly
 from mintpilot.core.query import Question
+from mintpilot.core.task import Task
 from mintpilot.core.tree import GapExplanation, Mint
 from mintpilot.mission.preview import Preview
 from mintpilot.recording.record import TreeRecord
@@ -38,6 +39,16 @@ class GapReport(_Report):
     entropy_bits: float
     gain_bits: float
     regret_saved_s: float
+
+
+class StepReport(_Report):
+    """One step as the instruction was understood."""
+
+    n: int
+    action: str
+    target: str
+    place: str
+    text: str
 
 
 class PlanClassReport(_Report):
@@ -76,6 +87,14 @@ class DeliberationReport(_Report):
     schema_version: int = SCHEMA_VERSION
     mission: str
     strategy: str
+    steps: list[StepReport]
+    """What will be done, in order."""
+    keep_out: list[str]
+    """What is stayed out of or away from."""
+    slowly: bool
+    """True where the whole flight is flown slowly."""
+    needs_confirmation: bool
+    """True where a language model read the instruction: it is flown only after the operator's yes."""
     gaps: list[GapReport]
     tree: TreeRecord | None
     """Null for strategies that build none, and where there are no gaps."""
@@ -104,6 +123,7 @@ def deliberation_report(
     preview: Preview,
     *,
     mission: str,
+    task: Task,
     strategy: str,
     explanations: tuple[GapExplanation, ...],
     question: Question | None,
@@ -116,6 +136,10 @@ def deliberation_report(
     tree = tree_record(decision.mint, gaps.values()) if decision.mint else None
     return DeliberationReport(
         mission=mission,
+        steps=steps_report(task),
+        keep_out=list(task.keep_out),
+        slowly=task.slowly,
+        needs_confirmation=task.needs_confirmation,
         strategy=strategy,
         gaps=[
             _gap(gaps[explanation.gap_id], explanation) for explanation in explanations if explanation.gap_id in gaps
@@ -132,6 +156,11 @@ def deliberation_report(
         left_out=list(preview.first.left_out),
         seconds=seconds,
     )
+
+
+def steps_report(task: Task) -> list[StepReport]:
+    """The steps of a task, for reports."""
+    return [StepReport(n=s.n, action=s.action, target=s.target, place=s.place, text=s.text) for s in task.steps]
 
 
 def _gap(gap: KnowledgeGap, explanation: GapExplanation) -> GapReport:

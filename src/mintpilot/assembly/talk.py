@@ -18,8 +18,8 @@ from mintpilot.elicitation.wording import word_question
 from mintpilot.language.answer_model import READING_S, read_with_model
 from mintpilot.language.answers import order_in, read_answer
 from mintpilot.language.instruction import parse_instruction
+from mintpilot.language.instruction_model import parse_with_model
 from mintpilot.language.proposing import propose_cuts
-from mintpilot.language.reading import parse_with_model
 from mintpilot.language.translating import ENGLISH, wording_for
 from mintpilot.language.wording import ModelWording, Wording
 from mintpilot.mission.rewording import Improve
@@ -66,15 +66,20 @@ class Talk(AbstractContextManager["Talk"]):
     def __exit__(self, *_: object) -> None:
         self.close()
 
-    def parse(self, text: str, home_m: Vec3 | None = None) -> Task:
+    def parse(self, text: str, home_m: Vec3 | None = None, known: Collection[str] = ()) -> Task:
         """The instruction as a task: by rules, and what they refuse with the model's help.
+
+        Args:
+            text: the instruction.
+            home_m: where the drone comes back to, metres.
+            known: words that the map uses for things, in lower case.
 
         Raises:
             InputError: neither way gives a task; the rules' own reason.
         """
         if self._model is None:
-            return parse_instruction(text, home_m=home_m)
-        return parse_with_model(text, self._model, home_m=home_m)
+            return parse_instruction(text, home_m=home_m, known=known)
+        return parse_with_model(text, self._model, home_m=home_m, known=known)
 
     def understand(
         self,

@@ -8,13 +8,17 @@ from pathlib import Path
 
 from mintpilot.assembly.registry import load
 from mintpilot.assembly.strategies import make_strategy
-from mintpilot.assembly.worlds import build_world, scenario_of
+from mintpilot.assembly.worlds import build_world, listed_words, scenario_of
 from mintpilot.core.errors import MintPilotError
 from mintpilot.language.instruction import parse_instruction
+from mintpilot.language.phrases import parse_phrase
 from mintpilot.mission_file.reader import Place, Problem, place_problems
 from mintpilot.mission_file.schema import MissionFile
-from mintpilot.mission_file.schema_world import ScenarioWorld
+from mintpilot.mission_file.schema_world import MapWorld, ScenarioWorld
 from mintpilot.uncertainty.findings import find_gaps
+
+_ANYWHERE = (0.0, 0.0, 0.0)
+"""Stands for the start until the world is built."""
 
 
 def validation_problems(path: str | Path, file: MissionFile) -> list[Problem]:
@@ -35,7 +39,14 @@ def _mistakes(file: MissionFile, base: Path) -> Iterator[tuple[Place, str]]:
         *_tried(("language", "model"), lambda: load("language", file.language.model)),
     ]
     if file.goals is None:
-        found += _tried(("instruction",), lambda: parse_instruction(file.instruction))
+        found += _tried(
+            ("instruction",),
+            lambda: parse_instruction(file.instruction, home_m=_ANYWHERE, known=listed_words(file.world)),
+        )
+    regions = {r.id for r in file.world.regions} if isinstance(file.world, MapWorld) else set()
+    for index, wish in enumerate(file.keep_away):
+        if wish.thing not in regions:
+            found += _tried(("keep_away", index, "from"), partial(parse_phrase, wish.thing, listed_words(file.world)))
     if isinstance(file.world, ScenarioWorld):
         found += _scenario_mistakes(file.world)
     yield from found

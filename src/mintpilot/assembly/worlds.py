@@ -3,21 +3,22 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Protocol
 
 from mintpilot.assembly.declared import DeclaredTruth, wanted_of
-from mintpilot.core.errors import MissionError
+from mintpilot.core.errors import InputError, MissionError
 from mintpilot.core.gap import CorrelationGroup
 from mintpilot.core.geometry import Vec3
 from mintpilot.core.mission import Mission
 from mintpilot.core.plan import VehicleLimits
 from mintpilot.core.ports import TruthOracle
 from mintpilot.core.semantic_map import SemanticMap
-from mintpilot.core.task import Task
+from mintpilot.core.task import SLOW, KeepAway, Reference, Task
 from mintpilot.language.instruction import parse_instruction
+from mintpilot.language.phrases import parse_phrase
 from mintpilot.mapping.listed_objects import with_solid_objects
 from mintpilot.mission_file.schema import MissionFile
 from mintpilot.mission_file.schema_base import attributes_of, place_of
@@ -30,6 +31,8 @@ from mintpilot.simulation.scenarios import Scenario, make_scenario
 from mintpilot.simulation.scene import ClosedRoom, FlightRules, Person, Scene, Shape, Smoke, Solid
 from mintpilot.simulation.scene_map import map_of_scene
 from mintpilot.simulation.truth import SceneTruth
+from mintpilot.uncertainty.findings import find_gaps
+from mintpilot.uncertainty.keep_away import with_keep_away
 
 RESERVE = 0.2
 """Share of a battery that plans leave."""
@@ -59,8 +62,11 @@ class World:
 class Parse(Protocol):
     """Reads an instruction."""
 
-    def __call__(self, text: str, /, *, home_m: Vec3 | None) -> Task:
-        """The task; ``home_m`` is where the drone comes back to, metres. Raises `InputError` with the reason."""
+    def __call__(self, text: str, /, *, home_m: Vec3 | None, known: Collection[str] = ()) -> Task:
+        """The task. Raises `InputError` with the reason.
+
+        ``home_m`` is where the drone comes back to, metres; ``known`` the words that the map uses for things.
+        """
         ...
 
 
@@ -115,13 +121,15 @@ def _from_scene(file: MissionFile, scene: Scene, seed: int, parse: Parse) -> Wor
 
 
 def _assembled(file: MissionFile, mission: Mission, scene: Scene, rules: FlightRules, seed: int, parse: Parse) -> World:
+    task = _with_wishes(task_of(file) or parse(mission.instruction, home_m=mission.start_m), file)
+    seen = map_of_scene(scene, mission.resolution_m)
     return World(
-        mission=mission,
-        task=task_of(file) or parse(mission.instruction, home_m=mission.start_m),
+        mission=replace(mission, limits=_at_pace(mission.limits, task)),
+        task=task,
         scene=scene,
         rules=rules,
         truth=SceneTruth(scene),
-        map=map_of_scene(scene, mission.resolution_m),
+        map=with_keep_away(seen, task, start_m=mission.start_m),
         is_map=False,
         seed=seed,
         groups=correlations_of(file),
@@ -133,7 +141,9 @@ def _from_map(file: MissionFile, world: MapWorld, base: Path, seed: int, parse: 
     start = place_of(world.start_m, world.height_m)
     truths = truths_of(file)
     mission = mission_of(file, start_m=start, volume=bare.frame.box)
-    task = task_of(file, layer_m=world.height_m) or parse(mission.instruction, home_m=mission.start_m)
+    said = task_of(file, layer_m=world.height_m)
+    task = said or parse(mission.instruction, home_m=mission.start_m, known=listed_words(world))
+    task = _with_wishes(task, file)
     map_ = map_of(
         world,
         base,
@@ -142,6 +152,9 @@ def _from_map(file: MissionFile, world: MapWorld, base: Path, seed: int, parse: 
         goals_m=[goal.reference.position_m for goal in task.subgoals if goal.reference.position_m is not None],
         clearance_m=mission.limits.clearance_m,
     )
+    problems = find_gaps(map_, task, start_m=start).problems if task.needs_confirmation else ()
+    if problems:
+        raise InputError(f"'{mission.instruction}' was read by a language model: {' '.join(problems)}")
     wanted = wanted_of(map_, task, truths, start)
     scene = scene_of_map(
         map_,
@@ -153,12 +166,12 @@ def _from_map(file: MissionFile, world: MapWorld, base: Path, seed: int, parse: 
         must_be_found=wanted.people,
     )
     return World(
-        mission=replace(mission, limits=_with_reserve(mission.limits), volume=map_.frame.box),
+        mission=replace(mission, limits=_with_reserve(_at_pace(mission.limits, task)), volume=map_.frame.box),
         task=task,
         scene=scene,
         rules=replace(_hull(mission.limits, flat=map_.frame.is_flat), endurance_s=mission.limits.endurance_s),
         truth=DeclaredTruth(truths),
-        map=with_solid_objects(map_, mission.limits.clearance_m),
+        map=with_keep_away(with_solid_objects(map_, mission.limits.clearance_m), task, start_m=start),
         is_map=True,
         seed=seed,
         groups=correlations_of(file),
@@ -173,6 +186,36 @@ def _hull(limits: VehicleLimits, *, flat: bool) -> FlightRules:
     half_height_m = min(FlightRules().half_height_m, limits.radius_m / 5)
     wide = limits.radius_m if flat else math.sqrt(limits.radius_m**2 - half_height_m**2)
     return FlightRules(radius_m=wide - ROUNDING_M, half_height_m=half_height_m)
+
+
+def listed_words(world: MapWorld | ScenarioWorld | SceneWorld) -> frozenset[str]:
+    """The words that a given map uses for things, as its file states them; none for other worlds."""
+    if not isinstance(world, MapWorld):
+        return frozenset()
+    objects = world.objects
+    said = [o.label for o in objects] + [v for o in objects for values in o.attributes.values() for v in values]
+    said += [room.description for room in world.rooms] + [region.description for region in world.regions]
+    return frozenset(word for text in said for word in text.lower().replace("_", " ").split())
+
+
+def _with_wishes(task: Task, file: MissionFile) -> Task:
+    """The task with the distances that the file wants kept, besides those of the instruction."""
+    regions = {r.id for r in file.world.regions} if isinstance(file.world, MapWorld) else set()
+    wishes = tuple(
+        KeepAway(
+            reference=Reference(phrase=spec.thing, object_id=spec.thing)
+            if spec.thing in regions
+            else replace(parse_phrase(spec.thing), every=True),
+            distance_m=spec.metres,
+        )
+        for spec in file.keep_away
+    )
+    return replace(task, keep_away=(*task.keep_away, *wishes)) if wishes else task
+
+
+def _at_pace(limits: VehicleLimits, task: Task) -> VehicleLimits:
+    """The limits with the cruise speed that the person asked for."""
+    return replace(limits, cruise_mps=limits.cruise_mps * SLOW) if task.slowly else limits
 
 
 def _with_reserve(limits: VehicleLimits) -> VehicleLimits:

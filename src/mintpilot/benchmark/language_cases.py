@@ -12,12 +12,8 @@ import yaml
 from mintpilot.core.gap import ABSENT, BLOCKED, PASSABLE, PRESENT, Candidate, GapKind, KnowledgeGap, target_id
 from mintpilot.core.observation import Attribute
 from mintpilot.core.query import Literal, Query, Question, Saying, SayingKind
-from mintpilot.core.task import Action, Reference, SubGoal, Task
 
 _ANSWERS = "phrasings.yaml"
-_INSTRUCTIONS = "instructions.yaml"
-_REFUSED = "refused"
-_DWELL_S = SubGoal(action=Action.GO, reference=Reference(phrase="")).dwell_s
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -36,35 +32,6 @@ def answer_cases() -> Iterator[AnswerCase]:
         for reading, texts in readings.items():
             for text in texts:
                 yield AnswerCase(text=text, question=QUESTIONS[name], reading=reading)
-
-
-def instruction_cases() -> dict[str, dict[str, tuple[str, ...]]]:
-    """Group → instruction → the task expected of it, as `written`."""
-    groups = _read(_INSTRUCTIONS)
-    return {
-        group: {text: tuple(task) for text, task in rows.items()} for group, rows in groups.items() if group != _REFUSED
-    }
-
-
-def refused_instructions() -> dict[str, str]:
-    """Instructions that must be refused, each with words of the reason."""
-    refused: dict[str, str] = _read(_INSTRUCTIONS)[_REFUSED]
-    return refused
-
-
-def written(task: Task) -> tuple[str, ...]:
-    """A task in the notation of the cases."""
-    avoided = [f"{'avoid' if a.strict else 'spare'} {a.kind}" for a in task.avoid]
-    return (*(_step(subgoal) for subgoal in task.subgoals), *["people"] * task.seeks_people, *avoided)
-
-
-def _step(subgoal: SubGoal) -> str:
-    reference = subgoal.reference
-    words = [str(subgoal.action), reference.label, *(f"{a.name or '?'}={a.value}" for a in reference.attributes)]
-    if reference.position_m is not None:
-        words.append("@" + ",".join(f"{x:g}" for x in reference.position_m))
-    words += [f"dwell={subgoal.dwell_s:g}"] * (subgoal.dwell_s != _DWELL_S) + ["*"] * reference.every
-    return " ".join(word for word in words if word)
 
 
 def _read(name: str) -> dict[str, Any]:

@@ -5,15 +5,13 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import partial
 from pathlib import Path
 
-from mintpilot.benchmark.introplan import LOOKED_AT, Ambiguity, ambiguity, meant_by_model, meant_by_rules, read_scenes
+from mintpilot.benchmark.instruction_trials import Score, upper_bound
 from mintpilot.benchmark.language_cases import answer_cases
 from mintpilot.benchmark.language_trials import (
     Answered,
     Counting,
-    Parsed,
     Speed,
     Worded,
     answer_all,
@@ -35,7 +33,8 @@ class Way:
     """What was measured with one language model beside the rules; without one for `RULES`."""
 
     name: str
-    parsed: Parsed
+    parsed: Score | None
+    """None where no list of instructions was given."""
     answered: Answered
     reading_speed: Speed
     """For instructions and answers."""
@@ -48,7 +47,6 @@ class LanguageResult:
     """One run of the measurement."""
 
     ways: tuple[Way, ...]
-    ambiguous: tuple[Ambiguity, ...] = ()
     left_out: tuple[str, ...] = ()
     """What was not measured, and why."""
     schema_version: int = field(default=SCHEMA_VERSION)
@@ -61,9 +59,9 @@ class LanguageOptions:
     models: Mapping[str, Callable[[], LanguageModel]]
     """Name → how the model is made; `RULES` is always measured."""
     instructions: Path | None = None
-    """A file in IntroPlan's form."""
+    """A list in the form of ``bench/data/instructions.tsv``."""
     sample: int = 60
-    """Answers, and held-out ambiguous instructions, that a model is given; drawn with seed 0."""
+    """Answers that a model is given; drawn with seed 0."""
 
 
 def models_there() -> tuple[str, ...]:
@@ -77,15 +75,7 @@ def measure_language(options: LanguageOptions, progress: Callable[[str], None] =
     Raises:
         InputError: the file of instructions cannot be used.
     """
-    scenes = read_scenes(options.instructions) if options.instructions else []
-    first = [s for s in scenes if s.number < LOOKED_AT]
-    rest = [s for s in scenes if s.number >= LOOKED_AT]
-    left_out = [] if scenes else ["ambiguous instructions: no file was given; --instructions names one"]
-    ambiguous = [
-        ambiguity(RULES, part, some, meant_by_rules)
-        for part, some in (("looked at", first), ("held out", rest))
-        if some
-    ]
+    left_out = [] if options.instructions else ["instructions: no list was given; --instructions names one"]
     ways = []
     for name, make in {RULES: NoModel, **options.models}.items():
         progress(f"{name} …")
@@ -95,26 +85,21 @@ def measure_language(options: LanguageOptions, progress: Callable[[str], None] =
             left_out.append(f"{name}: {error}")
             continue
         try:
-            ways.append(_way(name, model, options.sample))
-            if rest and name != RULES:
-                meant = partial(meant_by_model, model=model)
-                ambiguous.append(
-                    ambiguity(name, "held out, sample", rest[:: max(1, len(rest) // options.sample)], meant)
-                )
+            ways.append(_way(name, model, options))
         finally:
             getattr(model, "close", lambda: None)()
-    return LanguageResult(ways=tuple(ways), ambiguous=tuple(ambiguous), left_out=tuple(left_out))
+    return LanguageResult(ways=tuple(ways), left_out=tuple(left_out))
 
 
-def _way(name: str, model: LanguageModel, sample: int) -> Way:
+def _way(name: str, model: LanguageModel, options: LanguageOptions) -> Way:
     getattr(model, "wait", lambda: None)()
     counting = Counting(model)
     cases = list(answer_cases())
     is_alone = name == RULES
     return Way(
         name=name,
-        parsed=parse_all(counting),
-        answered=answer_all(cases if is_alone else sampled(cases, sample), counting),
+        parsed=parse_all(options.instructions, counting) if options.instructions else None,
+        answered=answer_all(cases if is_alone else sampled(cases, options.sample), counting),
         reading_speed=counting.speed(),
         worded=None if is_alone else word_all(model),
     )
@@ -122,20 +107,19 @@ def _way(name: str, model: LanguageModel, sample: int) -> Way:
 
 def language_tables(result: LanguageResult) -> list[tuple[str, Sequence[str], list[Sequence[str]]]]:
     """Caption, header and rows of each table."""
-    parsed = [(w.name, str(w.parsed.n), _share(w.parsed.as_expected, w.parsed.n), str(w.parsed.as_something_else))
-              for w in result.ways]  # fmt: skip
+    parsed = [_parsed(w.name, w.parsed) for w in result.ways if w.parsed is not None]
     answered = [_answered(w.name, w.answered) for w in result.ways]
     worded = [_worded(w.name, w.worded) for w in result.ways if w.worded is not None]
     speeds = [
         (w.name, "instructions and answers", *_speed(w.reading_speed)) for w in result.ways if w.worded is not None
     ]
     speeds += [(w.name, "wordings", *_speed(w.worded.speed)) for w in result.ways if w.worded is not None]
-    ambiguous = [
-        (a.way, a.part, str(a.n), *(f"{100 * x:.1f} %" for x in (a.exact, a.over_ask, a.over_step, a.unsafe)))
-        for a in result.ambiguous
-    ]
     tables: list[tuple[str, Sequence[str], list[Sequence[str]]]] = [
-        ("Instructions", ("way", "n", "as expected", "as something else"), [*parsed]),
+        (
+            "Instructions",
+            ("way", "n", "silently wrong", "at most, 95 %", "within the verbs", "of those right", "refused"),
+            [*parsed],
+        ),
         (
             "Answers",
             ("way", "n", "understood at once", "after a read-back", "taken though not said", "No for Yes"),
@@ -143,9 +127,15 @@ def language_tables(result: LanguageResult) -> list[tuple[str, Sequence[str], li
         ),
         ("Wordings", ("way", "n", "accepted", "in other words", "words, template", "words, model"), [*worded]),
         ("The model's time", ("way", "for", "calls", "p50", "p95", "tokens"), [*speeds]),
-        ("Ambiguous instructions", ("way", "part", "n", "exact set", "over-ask", "over-step", "unsafe"), [*ambiguous]),
     ]
     return [table for table in tables if table[2]]
+
+
+def _parsed(name: str, found: Score) -> tuple[str, ...]:
+    wrong = len(found.wrong)
+    bound = f"{100 * upper_bound(wrong, found.n):.2f} %"
+    right = _share(found.right, found.within)
+    return (name, str(found.n), str(wrong), bound, str(found.within), right, _share(len(found.refused), found.within))
 
 
 def _share(part: int, whole: int) -> str:

@@ -6,10 +6,11 @@ import random
 import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from statistics import mean, quantiles
 
-from mintpilot.benchmark.language_cases import AnswerCase, asked, box, instruction_cases, written
-from mintpilot.core.errors import InputError
+from mintpilot.benchmark.instruction_trials import Score, read_rows, score
+from mintpilot.benchmark.language_cases import AnswerCase, asked, box
 from mintpilot.core.gap import (
     ABSENT,
     BLOCKED,
@@ -26,7 +27,7 @@ from mintpilot.core.query import Question, Reply, Saying, SayingKind
 from mintpilot.core.reading import Reading, ReadingKind, guarded_replies, reply_of
 from mintpilot.elicitation.wording import word_question
 from mintpilot.language.answer_model import read_with_model
-from mintpilot.language.reading import parse_with_model
+from mintpilot.language.instruction_model import parse_with_model
 from mintpilot.language.wording import ModelWording
 
 PATIENT_S = 60.0
@@ -72,15 +73,6 @@ class Speed:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Parsed:
-    """Instructions read as expected, as something else, or refused (the rest)."""
-
-    n: int
-    as_expected: int
-    as_something_else: int
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
 class Answered:
     """Answers understood at once and after a read-back; guarded replies taken but not said; Yes taken for a No."""
 
@@ -104,18 +96,9 @@ class Worded:
     speed: Speed
 
 
-def parse_all(model: LanguageModel) -> Parsed:
-    """All written-down instructions."""
-    cases = [case for group in instruction_cases().values() for case in group.items()]
-    right = wrong = 0
-    for text, expected in cases:
-        try:
-            task = parse_with_model(text, model, home_m=_HOME_M, timeout_s=PATIENT_S)
-        except InputError:
-            continue
-        right += written(task) == expected
-        wrong += written(task) != expected
-    return Parsed(n=len(cases), as_expected=right, as_something_else=wrong)
+def parse_all(file: Path, model: LanguageModel) -> Score:
+    """A list of instructions with the steps that they mean, each read by the grammar and, where refused, the model."""
+    return score(read_rows(file), lambda text: parse_with_model(text, model, home_m=_HOME_M, timeout_s=PATIENT_S))
 
 
 def answer_all(cases: Sequence[AnswerCase], model: LanguageModel) -> Answered:

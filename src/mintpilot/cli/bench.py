@@ -144,8 +144,8 @@ def language(
     Args:
         llm: Model to measure beside the rules: embedded, endpoint, or one of a plug-in; may be given several times.
             Default: those that are there.
-        instructions: Ambiguous instructions with their possible objects, in the form of IntroPlan's file.
-        sample: So many answers and ambiguous instructions are given to each model.
+        instructions: Instructions with the steps that they mean, as in bench/data/instructions.tsv.
+        sample: So many answers are given to each model.
         out: Folder for language.json. Default: nothing is kept.
         json: Print one JSON object, and nothing else, on standard output.
         debug: Show the traceback of an error.

@@ -15,6 +15,7 @@ from mintpilot.cli.bench import bench
 from mintpilot.cli.exits import EPILOGUE, ExitCode, fail, guarded
 from mintpilot.cli.interrupts import listen
 from mintpilot.cli.understand_answer import answer
+from mintpilot.cli.understand_instruction import instruction
 
 app = App(
     name="mintpilot",
@@ -290,6 +291,10 @@ understand.command(
         'mintpilot understand answer "not the red one" --kind target --json',
         "mintpilot understand answer --file answers.txt --kind presence --by voice",
     ),
+)
+understand.command(
+    instruction,
+    help_epilogue=examples('mintpilot understand instruction "Pick up the red box and come back"'),
 )
 app.command(understand)
 

@@ -35,6 +35,11 @@ def think(
 def lines_of(report: DeliberationReport) -> Iterator[str]:
     """The report for people, line by line."""
     yield f"Mission {report.mission}, strategy {report.strategy}: {_count(len(report.gaps), 'knowledge gap')}"
+    yield from (f"  {step.n} {step.text}" for step in report.steps)
+    if report.slowly:
+        yield "  the whole flight slowly"
+    if report.keep_out:
+        yield f"  keep out of: {', '.join(report.keep_out)}"
     for gap in report.gaps:
         yield from _gap_lines(gap)
     if report.tree_text:

@@ -5,7 +5,7 @@ All are synchronous; an adapter that needs a thread or an event loop hides it an
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection
+from collections.abc import Collection
 from dataclasses import dataclass
 from typing import Protocol, TypeAlias
 

@@ -1,12 +1,23 @@
-"""The instruction [I] made into ordered sub-goals."""
+"""The instruction [I] made into ordered sub-goals, and the steps that a person is shown before anything is flown."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from enum import StrEnum
 
+from mintpilot.core.errors import MissionError
 from mintpilot.core.geometry import Vec3
 from mintpilot.core.observation import Attribute, RegionKind
+
+START = "the start"
+"""What the place of take-off is called in references and steps."""
+KEEP_AWAY_M = 2.0
+"""Distance kept from what is to be kept away from where the person names none, metres."""
+DWELL_S = 2.0
+"""How long the drone stays at a stop where nothing else is said, seconds."""
+SLOW = 0.5
+"""Share of the cruise speed that is flown when the person says "slowly"."""
 
 
 class Action(StrEnum):
@@ -20,6 +31,12 @@ class Action(StrEnum):
     """Hand over what is carried."""
     LOOK = "look"
     """Look into a room from its viewpoint."""
+    COUNT = "count"
+    """Go near each thing of the kind, or look into the room that holds them: how many there are is reported."""
+    PHOTOGRAPH = "photograph"
+    """Take a picture of it from near."""
+    REPORT = "report"
+    """Say what is seen from there."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -46,8 +63,14 @@ class SubGoal:
 
     action: Action
     reference: Reference
-    dwell_s: float = 2.0
+    """Where it is done: the thing itself, the container, the receiver, or the room."""
+    dwell_s: float = DWELL_S
     """How long the drone stays there, seconds."""
+    thing: Reference | None = None
+    """What the step is about where that is not the place: what is looked for or counted in a room, taken out of a
+    container, or handed over."""
+    height_m: float | None = None
+    """Height at which the drone arrives, metres; None: whichever is nearest."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -57,6 +80,36 @@ class Avoidance:
     kind: RegionKind
     strict: bool = True
     """False for a wish (``skip the smoke if you can``): given up where the task cannot be done otherwise."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class KeepAway:
+    """A distance to be kept from things or regions. A wish: a plan that cannot keep it says so."""
+
+    reference: Reference
+    """Things by description, all that match; or a region by its kind (as label) or its id (as ``object_id``)."""
+    distance_m: float = KEEP_AWAY_M
+    """Between the drone's body and their surface, metres."""
+
+    def __post_init__(self) -> None:
+        if not 0 < self.distance_m <= 100:
+            raise MissionError(f"keep {self.distance_m:g} m away: must be above 0 and at most 100 metres")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Step:
+    """One step as it was understood, in plain words, for the person to check."""
+
+    n: int
+    """From 1, in the order in which the steps are done."""
+    action: str
+    """A value of `Action`, or ``seek``: look for everybody who needs help."""
+    target: str
+    """What it is about; empty where the place says it all."""
+    place: str
+    """Where; empty where the target says it."""
+    text: str
+    """The step as one short sentence without a full stop: ``bring the bottle to the injured person``."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -70,3 +123,65 @@ class Task:
     """True when everybody who is hurt must be found: closed rooms then open presence gaps."""
     avoid: tuple[Avoidance, ...] = ()
     """What is to be stayed out of. Regions of these kinds open no gap, so that no plan enters them."""
+    keep_away: tuple[KeepAway, ...] = ()
+    """What a distance is to be kept from."""
+    slowly: bool = False
+    """True when the person asked to fly slowly: the whole flight is flown at `SLOW` of the cruise speed."""
+    needs_confirmation: bool = False
+    """True when a language model read the instruction: nothing is flown before the operator's yes to the steps."""
+
+    @property
+    def steps(self) -> tuple[Step, ...]:
+        """What will be done, in order, as a person should read it before take-off."""
+        done = [g for g in self.subgoals if not (self.seeks_people and _is_anybody(g))]
+        found = [_step(n, subgoal) for n, subgoal in enumerate(done, start=1)]
+        if self.seeks_people:
+            text = "look for everybody who needs help"
+            found.append(Step(n=len(found) + 1, action="seek", target="everybody who needs help", place="", text=text))
+        return tuple(found)
+
+    @property
+    def keep_out(self) -> tuple[str, ...]:
+        """What the drone stays out of or away from, in plain words: ``smoke``, ``people (2 m)``."""
+        kinds = [f"{a.kind}" if a.strict else f"{a.kind}, if possible" for a in self.avoid]
+        return (*kinds, *(f"{_bare(k.reference.phrase)} ({k.distance_m:g} m)" for k in self.keep_away))
+
+
+def step_lines(task: Task) -> Iterator[str]:
+    """The steps and what is stayed out of, line by line, to be shown before anything is flown."""
+    for step in task.steps:
+        yield f"{step.n} {step.text}"
+    if task.slowly:
+        yield "the whole flight slowly"
+    if task.keep_out:
+        yield f"keep out of: {', '.join(task.keep_out)}"
+
+
+def _step(n: int, goal: SubGoal) -> Step:
+    place = goal.reference.phrase
+    thing = goal.thing.phrase if goal.thing is not None else ""
+    text = {
+        Action.GO: f"go to {place}",
+        Action.PICK: f"pick up {thing} from {place}" if thing else f"pick up {place}",
+        Action.DELIVER: f"bring {thing or 'what is carried'} to {place}",
+        Action.LOOK: f"look into {place} for {thing}" if thing else f"look into {place}",
+        Action.COUNT: f"count {thing} in {place}" if thing else f"count {place}",
+        Action.PHOTOGRAPH: f"photograph {place}",
+        Action.REPORT: f"report what is seen at {place}",
+    }[goal.action]
+    if goal.height_m is not None:
+        text += f", at a height of {goal.height_m:g} m"
+    if goal.dwell_s != DWELL_S:
+        text += f", stay there for {goal.dwell_s:g} s"
+    at_place = bool(thing) or goal.action in (Action.LOOK, Action.REPORT, Action.DELIVER)
+    return Step(n=n, action=str(goal.action), target=thing if at_place else place, place=place if at_place else "",
+                text=text)  # fmt: skip
+
+
+def _is_anybody(goal: SubGoal) -> bool:
+    """Whether going there is part of looking for everybody."""
+    return goal.action is Action.GO and goal.reference.every and goal.reference.label == "person"
+
+
+def _bare(phrase: str) -> str:
+    return phrase.removeprefix("the ")

@@ -15,7 +15,7 @@ from rich.console import Console, Group
 from rich.text import Text
 
 from mintpilot.core.errors import DeviceError
-from mintpilot.core.inputs import Answered, OperatorInput, Ordered, QuestionShown
+from mintpilot.core.inputs import Answered, MoreTimeWanted, OperatorInput, Ordered, QuestionShown
 from mintpilot.core.ports import Operator, Understand
 from mintpilot.core.query import NO_PART, YES_PART, Answer, Evidence, Order, Query, Question, Reply, Standing
 from mintpilot.core.reading import AnsweredBy, Reading, ReadingKind, reply_of

@@ -44,10 +44,26 @@ class AnswerReading(_Strict):
     reading: Literal["yes", "no", "unsure", "other"]
 
 
-class Steps(_Strict):
-    """An instruction in the documented language, one step an entry."""
+class TypedStep(_Strict):
+    """One step of an instruction. What each field holds depends on the action; `Steps` says how."""
 
-    steps: list[str] = Field(min_length=1, max_length=12)
+    action: Literal["go", "pick", "deliver", "look", "count", "photograph", "report", "seek"]
+    target: str = Field(default="", max_length=100)
+    place: str = Field(default="", max_length=100)
+
+
+class Distance(_Strict):
+    """What is to be stayed away from."""
+
+    what: str = Field(min_length=1, max_length=100)
+    metres: float = Field(default=0.0, ge=0, le=100)
+
+
+class Steps(_Strict):
+    """An instruction as typed steps. ``target`` is the thing, ``place`` the room, the container or the receiver."""
+
+    steps: list[TypedStep] = Field(min_length=1, max_length=12)
+    keep_out: list[Distance] = Field(default=[], max_length=6)
 
 
 def read_form(text: str, form: type[_Form]) -> _Form | None:

@@ -1,26 +1,29 @@
-"""Instruction [I] → task, by rules alone (method, section 1).
+"""Instruction [I] → task, by one small grammar (method, section 1).
 
-The documented language is a list of steps in the order in which they are to be done: *go to*, *find*, *pick up … from*,
-*bring … to*, *look into*, *check every room*, *wait*, places by name or by coordinates, *check whether anyone is hurt*,
-and what is to be avoided. What is unclear or impossible is an error that says what was understood; nothing is guessed.
+An instruction is a list of clauses; each becomes typed steps or says what is stayed out of. Every word must have its
+part in the reading. One that has none refuses the whole instruction and is named: nothing is guessed, nothing left out.
 """
 
 from __future__ import annotations
 
-import re
+from collections.abc import Collection
 from dataclasses import dataclass
+from itertools import product
 
-from mintpilot.core.errors import InputError
 from mintpilot.core.geometry import Vec3
-from mintpilot.core.task import Action, Avoidance, Reference, SubGoal, Task
-from mintpilot.language import lexicon, patterns
-from mintpilot.language.clauses import Reading, read_clause
-from mintpilot.language.phrases import parse_phrase
-from mintpilot.language.rewriting import rewritten
-from mintpilot.language.slips import mended
+from mintpilot.core.task import Action, SubGoal, Task
+from mintpilot.language import lexicon, verbs
+from mintpilot.language.clauses import HURT_PEOPLE, Reading, is_person
+from mintpilot.language.keeping_out import keeps_out
+from mintpilot.language.phrases import InstructionError, Words, refuse, words_of
+from mintpilot.language.rules import read_clause
 
 _LONGEST = 600
-_DOING = {Action.GO: "go to", Action.PICK: "pick up at", Action.DELIVER: "deliver to", Action.LOOK: "look into"}
+_MARKS = (".", ";", "!", "?", ":")
+_DOING = {
+    Action.GO: "go to", Action.PICK: "pick up", Action.DELIVER: "deliver to", Action.LOOK: "look into",
+    Action.COUNT: "count", Action.PHOTOGRAPH: "photograph", Action.REPORT: "report",
+}  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -31,120 +34,190 @@ class Capabilities:
     """Without a gripper: all but `Action.PICK` and `Action.DELIVER`."""
 
 
-def parse_instruction(text: str, capabilities: Capabilities | None = None, *, home_m: Vec3 | None = None) -> Task:
+def parse_instruction(
+    text: str,
+    capabilities: Capabilities | None = None,
+    *,
+    home_m: Vec3 | None = None,
+    known: Collection[str] = (),
+) -> Task:
     """Turns an instruction into ordered sub-goals.
 
     Args:
         text: the words of the person, in English.
         capabilities: what the vehicle can do; None: everything that `Action` names.
         home_m: where ``come back`` leads, metres; None: such an instruction is refused.
+        known: words that the mission's map uses for things, in lower case; they count as known here.
 
     Raises:
-        InputError: the instruction is empty, unclear, contradicts itself or asks for what the vehicle cannot do. The
-            message says which part, why, and what was understood of the rest.
+        InputError: the instruction is empty, unclear, or asks for what the vehicle cannot do; as `InstructionError` it
+            names the word that is in the way.
     """
-    words = _normal(text)
-    words, avoid = _avoidances(rewritten(words))
-    reading, seeks = Reading(home_m=home_m), False
-    for clause in _clauses(words):
-        if _seeks_people(clause, reading):
-            seeks = True
-            continue
-        for part in _parts(clause):
-            if not _read(part, reading):
-                raise InputError(_not_understood(part, reading))
-    seeks = seeks or any(_is_anybody(g.reference) for g in reading.subgoals)
-    if seeks and not any(g.reference.label == "person" for g in reading.subgoals):
-        reading.add(Action.GO, parse_phrase("anyone hurt"))
-    if not reading.subgoals:
-        raise InputError(
-            f"'{text.strip()}' says what to avoid but not what to do: add a step, as in 'go to the red box'"
+    words = Words(words_of(text), known)
+    if not any(token[0].isalpha() for token in words.tokens):
+        raise InstructionError(f"instruction '{text[:40]}' has no words: say what to do, as in 'go to the red box'")
+    if len(text) > _LONGEST:
+        raise InstructionError(
+            f"an instruction of {len(text)} characters: keep it under {_LONGEST}, one step after another"
         )
-    _check_capable(reading.subgoals, capabilities or Capabilities())
-    return Task(instruction=text, subgoals=tuple(reading.subgoals), seeks_people=seeks, avoid=avoid)
+    reading = Reading(words=words, home_m=home_m)
+    while _skip_joints(words):
+        _read_sentence(reading)
+    return _task(text, reading, capabilities or Capabilities())
 
 
-def _normal(text: str) -> str:
-    spoken = patterns.FILLER.sub(" ", text.replace("\N{RIGHT SINGLE QUOTATION MARK}", "'").lower())
-    words = re.sub(r"[a-z]+", lambda found: mended(found[0], lexicon.MENDED), " ".join(spoken.split()))
-    if not re.search(r"[a-z]", words):
-        raise InputError(f"instruction '{text[:40]}' has no words: say what to do, as in 'go to the red box'")
-    if len(words) > _LONGEST:
-        raise InputError(f"an instruction of {len(words)} characters: keep it under {_LONGEST}, one step after another")
-    return words.strip(' .!?"')
+def _read_sentence(reading: Reading) -> None:
+    """Clauses up to the end of a sentence."""
+    words = reading.words
+    begun = words.at
+    if words.take("before you", "before"):
+        _swapped(reading, begun)
+    elif words.take("after"):
+        _plain(words)
+        if not read_clause(reading) or not words.take(","):
+            raise _refusal(reading, begun)
+    while words.next() and words.next() not in _MARKS:
+        at, is_first = words.at, not reading.subgoals
+        words.take("first" if is_first else "")
+        _skip_joints(words)
+        words.open = words.next() not in lexicon.LIGHT_VERBS
+        if not _read_one(reading):
+            raise _refusal(reading, begun)
+        words.take("first" if is_first else "", "for me" if reading.carried is None else "")
+        if not _at_joint(reading):
+            raise _refusal(reading, at)
+        if words.take("after"):
+            _put_first(reading, begun)
+        _skip_joints(words)
 
 
-def _avoidances(words: str) -> tuple[str, tuple[Avoidance, ...]]:
-    found: list[Avoidance] = []
-    for match in patterns.AVOID.finditer(words):
-        what = match["what"].strip()
-        kind = next((k for word, k in lexicon.AVOIDED.items() if re.search(rf"\b{word}s?\b", what)), None)
-        if kind is None and not set(what.split()) & lexicon.NEVER_TOUCHED:
-            raise InputError(f"'{what}' cannot be avoided by name: only smoke, doors and areas marked on the map can")
-        if kind is not None:
-            found.append(Avoidance(kind=kind, strict=match["soft"] is None and match["wish"] is None))
-    return patterns.AVOID.sub(" ", words).strip(" ,.;"), tuple(dict.fromkeys(found))
-
-
-def _clauses(words: str) -> list[str]:
-    parts = (
-        patterns.TRAILING.sub("", patterns.POLITE.sub("", part.strip(" ,.!?"))).strip(" ,.!?")
-        for part in patterns.SPLIT.split(words)
-    )
-    return [part for part in parts if part and part not in ("and", "then", "please", "finally", "do", "it", "go")]
-
-
-def _parts(clause: str) -> list[str]:
-    """The clause, or its parts where ``and`` joins what is no step of its own: ``the red box and the blue one``."""
-    if re.search(r"\b(with|wearing|containing)\b", clause):
-        return [clause]
-    return re.split(r",? and |, (?=(?:the|every|all|each) )", clause)
-
-
-def _seeks_people(clause: str, reading: Reading) -> bool:
-    """Whether the clause asks to look for whoever is hurt; a place named in it is looked into."""
-    if patterns.SEEK.fullmatch(clause):
+def _read_one(reading: Reading) -> bool:
+    words = reading.words
+    if keeps_out(reading):
+        if words.take("while"):
+            _plain(words)
+            return read_clause(reading)
         return True
-    found = patterns.SEEK_IN.fullmatch(clause)
-    if found is None:
-        return False
-    place = parse_phrase(found["where"])
-    if place.label == "room":
-        reading.add(Action.LOOK, place)
-    elif place.label not in lexicon.VENUES:
-        return False
-    return True
+    if words.take("while", "but"):
+        return keeps_out(reading)
+    return read_clause(reading)
 
 
-def _read(clause: str, reading: Reading) -> bool:
-    if re.search(r"\b(not|don't|never|no|unless|until|if|while|before|after|when)\b", clause):
-        raise InputError(
-            f"'{clause}' is not understood: negations and conditions are only understood for smoke, doors and areas to "
-            "be avoided. Give the steps in the order in which they are to be done."
+def _at_joint(reading: Reading) -> bool:
+    """Whether the clause is over: no word of it is left. What only rounds it off is taken."""
+    words = reading.words
+    while words.take(*verbs.AFTERTHOUGHTS):
+        pass
+    if words.next() in ("", *_MARKS, ",", "and", "then", "after", "finally", "afterwards"):
+        return True
+    at = words.at
+    words.take("but", "while")
+    if reading.attempt(_keeps_out_ahead):
+        words.at = at + (words.tokens[at] == "but")
+        return True
+    words.at = at
+    return False
+
+
+def _keeps_out_ahead(reading: Reading) -> None:
+    at, avoid, keep = reading.words.at, list(reading.avoid), list(reading.keep_away)
+    if not keeps_out(reading):
+        reading.words.fail()
+    reading.words.at, reading.avoid, reading.keep_away = at, avoid, keep
+
+
+def _swapped(reading: Reading, begun: int) -> None:
+    """``before you go to the van, go to the gate``."""
+    _plain(reading.words)
+    later = Reading(words=reading.words, home_m=reading.home_m, named=reading.named)
+    if not read_clause(later) or not reading.words.take(",") or not read_clause(reading):
+        raise _refusal(reading, begun)
+    if not _at_joint(reading) or later.carried is not None:
+        raise _refusal(reading, begun)
+    reading.subgoals += later.subgoals
+    reading.seeks_people |= later.seeks_people
+    _skip_joints(reading.words)
+
+
+def _put_first(reading: Reading, begun: int) -> None:
+    """``… after visiting the tank``: said last and done first. Only where one clause and no other stands before it."""
+    _plain(reading.words)
+    earlier = Reading(words=reading.words, home_m=reading.home_m, named=reading.named)
+    if len(reading.subgoals) != 1 or reading.carried is not None or not read_clause(earlier):
+        raise _refusal(reading, begun)
+    reading.subgoals = [*earlier.subgoals, *reading.subgoals]
+    reading.carried = earlier.carried
+    if not _at_joint(reading) or reading.words.next() == "after":
+        raise _refusal(reading, begun)
+
+
+def _plain(words: Words) -> None:
+    """A verb in -ing at the cursor, as the plain verb."""
+    if words.next() in verbs.GERUNDS:
+        words.tokens[words.at] = verbs.GERUNDS[words.next()]
+
+
+def _skip_joints(words: Words) -> bool:
+    """Takes marks, joining words and politeness between clauses. Whether anything follows."""
+    while words.take(*verbs.JOINTS, *verbs.POLITE, *_MARKS, '"', "'"):
+        pass
+    return bool(words.next())
+
+
+def _task(text: str, reading: Reading, capabilities: Capabilities) -> Task:
+    if reading.told is not None:
+        raise InstructionError(
+            f"'{reading.told.phrase}' is said to be there, but no step takes it up: say what is to be done with it"
         )
-    for words, what in lexicon.CANNOT.items():
-        if re.match(rf"{words}\b", clause):
-            raise InputError(f"'{clause}' cannot be done: {what} is not among what the drone can do ({_can()})")
-    return read_clause(clause, reading)
+    if reading.seeks_people and not any(is_person(g.reference) for g in reading.subgoals):
+        reading.add(Action.GO, HURT_PEOPLE)
+    if not reading.subgoals and reading.took_off:
+        reading.add(Action.GO, reading.home())
+    if not reading.subgoals:
+        raise InstructionError(
+            f"'{text.strip()}' says nothing that is to be done: add a step, as in 'go to the red box'"
+        )
+    for subgoal, keep in product(reading.subgoals, reading.keep_away):
+        same = keep.reference.label == subgoal.reference.label != "person"
+        if same and keep.reference.attributes == subgoal.reference.attributes:
+            refuse(keep.reference.phrase, "cannot be gone to and stayed away from: leave one of them out")
+    for subgoal in reading.subgoals:
+        _check_capable(subgoal, capabilities)
+    return Task(
+        instruction=text,
+        subgoals=tuple(reading.subgoals),
+        seeks_people=reading.seeks_people,
+        avoid=tuple(dict.fromkeys(reading.avoid)),
+        keep_away=tuple(dict.fromkeys(reading.keep_away)),
+        slowly=reading.slowly,
+    )
 
 
-def _is_anybody(reference: Reference) -> bool:
-    return reference.every and reference.label == "person"
+def _check_capable(subgoal: SubGoal, capabilities: Capabilities) -> None:
+    if subgoal.action not in capabilities.actions:
+        raise InstructionError(
+            f"'{_DOING[subgoal.action]} {subgoal.reference.phrase}' cannot be done: the vehicle can only "
+            f"{', '.join(sorted(_DOING[a] for a in capabilities.actions))}. Change the instruction or the vehicle.",
+            word=_DOING[subgoal.action].split()[0],
+        )
 
 
-def _check_capable(subgoals: list[SubGoal], capabilities: Capabilities) -> None:
-    for subgoal in subgoals:
-        if subgoal.action not in capabilities.actions:
-            raise InputError(
-                f"'{_DOING[subgoal.action]} {subgoal.reference.phrase}' cannot be done: the vehicle can only "
-                f"{', '.join(sorted(_DOING[a] for a in capabilities.actions))}. Change the instruction or the vehicle."
-            )
-
-
-def _not_understood(clause: str, reading: Reading) -> str:
+def _refusal(reading: Reading, begun: int) -> InstructionError:
+    """Names the word in the way: one that is known to be beyond the grammar, else the first that fits nowhere."""
+    words = reading.words
+    tokens = words.tokens
+    end = next((i for i in range(max(words.at, begun), len(tokens)) if tokens[i] in _MARKS), len(tokens))
+    clause = tokens[begun:end] or tokens[begun:] or tokens
+    word = next((w for w in clause if w in lexicon.REASONS), "")
+    reason = lexicon.REASONS.get(word, "it has no part in anything that is understood here")
+    if not word:
+        word = tokens[max(begun, min(words.furthest, len(tokens) - 1))]
+    said = " ".join(clause)
     done = ", then ".join(f"{_DOING[g.action]} {g.reference.phrase}" for g in reading.subgoals) or "nothing yet"
-    return f"'{clause}' is not understood. Understood so far: {done}. Say it with one of: {_can()}."
-
-
-def _can() -> str:
-    return "go to, find, pick up, bring … to, look into, check whether anyone is hurt"
+    return InstructionError(
+        f"'{said}' is not understood because of '{word}': {reason}. Understood so far: {done}. Say it with one of: "
+        "go to, find, pick up, bring … to, look into, search … for, count, photograph, report what you see, "
+        "check whether anyone is hurt.",
+        word=word,
+        reason=reason,
+    )

@@ -1,11 +1,16 @@
-"""The words of the documented instruction language. Tables only."""
+"""The closed vocabulary of instructions. Tables only.
+
+Words of a map that is given are known besides. Any other word is refused by name, but for the one noun that follows its
+article and known adjectives directly: what is not on the map is found out there.
+"""
 
 from __future__ import annotations
 
 from mintpilot.core.observation import RegionKind
 
 
-def _words(text: str) -> frozenset[str]:
+def word_set(text: str) -> frozenset[str]:
+    """The words of a text."""
     return frozenset(text.split())
 
 
@@ -49,96 +54,145 @@ ADJECTIVES: dict[str, tuple[str, str]] = {
 }  # fmt: skip
 """Word → name and value of the attribute that it says."""
 
-PEOPLE = _words(
+PLAIN_ADJECTIVES = word_set(
+    "old new young heavy light thick thin short wide narrow open closed locked broken empty full fallen overturned "
+    "burning smoking missing lost abandoned main front back rear north south east west northern southern eastern "
+    "western upper lower middle dark bright rusty dirty clean wet dry warm cold hot steel iron glass paper leather "
+    "rubber marked restricted sealed damaged first-aid emergency far"
+)
+"""Adjectives that say something which no attribute has a name for: they rule nothing out."""
+
+PEOPLE = word_set(
     "person people victim victims survivor survivors casualty casualties patient patients human humans man woman child "
-    "men women children worker workers colleague firefighter guard anyone anybody someone somebody everyone everybody "
-    "guy guys lady girl boy kid kids"
+    "men women children worker workers colleague firefighter firefighters guard guards guy guys lady girl boy kid kids "
+    "hiker climber diver driver swimmer soldier tourist visitor pedestrian crowd baby"
 )
 """Nouns that mean the label ``person``."""
+ANYBODY = word_set("anyone anybody someone somebody everyone everybody")
+"""Whoever is there, not a certain person."""
+ROLES = word_set("nurse medic doctor paramedic fireman caretaker operator officer mechanic pilot rescuer robot")
+"""Nouns that mean somebody who is called by what they do; on a map they are labels of their own."""
 
-ROLES = _words("nurse medic doctor paramedic fireman caretaker driver operator officer mechanic")
-"""Nouns that mean people, who are called by what they do."""
-
-ANYBODY = _words("anyone anybody someone somebody everyone everybody people survivors victims casualties")
-"""Nouns that mean whoever is there, not a certain person."""
-
-ROOMS = _words("room rooms chamber chambers office offices")
-
-ROOM_KINDS = _words(
-    "kitchen bathroom workshop canteen bedroom classroom storeroom laboratory lab toilet cellar basement"
+ROOMS = word_set("room rooms chamber chambers")
+ROOM_KINDS = word_set(
+    "kitchen bathroom workshop canteen bedroom classroom storeroom laboratory lab toilet cellar basement office garage "
+    "attic lobby closet pantry library laundry foyer cafeteria restroom studio offices bathrooms bedrooms cupboard"
 )
-"""Rooms that are called by what they are for; which one it is must be asked."""
+"""Rooms that are called by what they are for."""
+ROOM_WORDS = word_set("storage server meeting living dining control engine boiler waiting conference equipment guest")
+"""What stands before ``room``."""
 
-PRONOUNS = _words("it them this that him her there")
-
-PERSONAL = _words("him her")
-"""Of these, the ones that mean a person."""
-
-DETERMINERS = _words("the a an this that these those my our his her their some any two three four five six")
-
-EVERY = _words("every each all both")
-
-VENUES = _words("warehouse building hall hangar house factory area zone place site depot scene store storehouse")
+VENUES = word_set("warehouse building hall hangar house factory area zone place site depot scene store storehouse")
 """Where it all happens: ``in the burning warehouse`` tells nothing apart."""
+CLOTHES = word_set("helmet mask jacket shirt vest hat coat glasses gloves uniform")
+SURFACES = word_set("table desk shelf rack counter floor ground bench chair bed sofa stand roof pallet")
+"""From these a thing is taken that stands on them; out of anything else, what it holds."""
 
-IRREGULAR = {"shelves": "shelf", "boxes": "box", "crates": "crate", "people": "person", "men": "man", "women": "woman"}
-"""Plurals that do not only add an s."""
+NOUNS = word_set(
+    # containers and goods
+    "box package parcel container carton crate case bin barrel drum cask bag backpack suitcase basket bucket can jar "
+    "bottle cup mug glass bowl plate pallet tank cylinder drawer cabinet locker pouch sack trolley cart tray envelope "
+    # furniture and fittings
+    "table desk chair shelf rack counter sofa couch bed bench lamp door gate doorway window stairs staircase stairwell "
+    "ladder pillar column post wall floor ceiling roof fridge oven microwave sink stove dishwasher television screen "
+    "computer laptop tablet printer sign poster clock mirror carpet plant fence fountain ramp platform corridor "
+    # tools and supplies
+    "tool toolbox hammer wrench screwdriver drill saw rope cable hose pipe valve pump generator motor machine battery "
+    "charger torch flashlight lantern radio phone camera helmet mask glove gloves vest jacket shirt hat coat shoe "
+    "extinguisher fire flames smoke kit medicine medication bandage blanket stretcher splint syringe defibrillator "
+    "flare whistle map key keys wallet glasses book pen pencil paper folder document letter card ball toy umbrella "
+    "towel "
+    # food and drink
+    "water food apple banana orange lemon pear peach tomato potato carrot bread sandwich pizza cake cookie chocolate "
+    "chips snack drink juice milk coffee tea soda coke cola beer egg cheese rice sponge soap spoon fork knife "
+    # vehicles and outdoors
+    "car truck van bus bicycle bike motorcycle ambulance forklift tractor excavator crane boat ship plane helicopter "
+    "tree bush rock stone river lake bridge road path tower antenna mast chimney house tent hut shed pier pole "
+    "flag cone barrier hydrant pylon statue field garden yard street corner entrance exit dock loading parking point "
+    "assembly panel switch station landing control end "
+    # animals
+    "dog cat horse cow sheep bird goat "
+)  # fmt: skip
+"""Nouns, and what stands before nouns in compounds: ``fire extinguisher``, ``loading dock``."""
 
-MENDED = _words("the and then please avoid without through person injured wounded everyone anyone smoke")
-"""Words that are read with a letter lost or two exchanged: no names of things are made of them."""
+FIXED = word_set(
+    "door gate doorway window wall floor ceiling roof stairs staircase stairwell pillar column corridor "
+    "platform ramp road  path bridge tower antenna mast chimney house tent hut shed pier river lake field "
+    "garden yard street corner entrance  exit dock point station fountain fence statue elevator car truck van "
+    "bus ambulance forklift tractor excavator crane  boat ship plane helicopter tree smoke fire flames end way "
+    "route lift line side "
+) | VENUES  # fmt: skip
+"""What nobody carries, so that taking it means something else: ``take the stairs``."""
+OWN_PARTS = word_set("battery motor camera sensor propeller rotor")
+"""What the drone has itself: to check it is no flight to it."""
+LIGHT_VERBS = word_set("take get give put place leave make hand move return drop have count check")
+"""Verbs that make another meaning of a noun that is not known: ``take a selfie``."""
+
+DETERMINERS = word_set("the a an this that these those my our your his her its their some")
+EVERY = word_set("every each all")
+
+IRREGULAR = {
+    "shelves": "shelf", "boxes": "box", "crates": "crate", "people": "person", "men": "man", "women": "woman",
+    "children": "child", "knives": "knife", "stairs": "stairs", "glasses": "glasses", "gloves": "gloves",
+    "flames": "flames", "offices": "office", "keys": "key", "branches": "branch",
+}  # fmt: skip
+"""Plurals that do not only add an s, and nouns that are none."""
 
 AVOIDED: dict[str, RegionKind] = {
-    "smoke": RegionKind.SMOKE,
-    "fumes": RegionKind.SMOKE,
-    "clouds": RegionKind.SMOKE,
-    "cloud": RegionKind.SMOKE,
-    "door": RegionKind.DOOR,
-    "doors": RegionKind.DOOR,
-    "doorway": RegionKind.DOOR,
-    "marked area": RegionKind.AREA,
-    "restricted area": RegionKind.AREA,
-    "closed area": RegionKind.AREA,
+    **dict.fromkeys(("smoke", "fume", "fumes", "cloud"), RegionKind.SMOKE),
+    **dict.fromkeys(("door", "doorway"), RegionKind.DOOR),
+    **dict.fromkeys(("area", "zone"), RegionKind.AREA),
 }
 """What a person may ask to stay out of → kind of region."""
 
-NEVER_TOUCHED = _words("fire flames walls wall racks rack shelves obstacles people everything collisions anything")
-"""What no plan flies into anyway, so that asking for it changes nothing."""
-
-FUNCTION_WORDS = _words(
-    "for of as that which where who whom whose is are be was were been am me you we i us yourself myself but "
-    "so because than while without to from into and or not if needs need wants contains holds has have via "
-    "past through they he she it when whether brought taken "
+GRAMMAR = word_set(
+    """go fly move head travel proceed navigate come get return walk hover continue to over straight directly back up
+    on towards toward above near by at inside into in out off from and then next finally also later afterwards
+    find locate search look for seek track down spot check inspect examine scan sweep visit approach reach see
+    whether is are there was be been does do did has have pick grab take collect fetch retrieve lift bring deliver
+    transport give hand drop put place leave set release onto beside behind under with wearing containing wait
+    stay hold remain half launch rtl home base start count how photograph snap picture photo image shoot report
+    describe say what can possible avoid avoiding skip bypass keep keeping staying steer clear away of through
+    going flying passing entering enter pass limits height altitude metre metres meter meters slowly carefully
+    gently please could would will need want like should must it them him her there this that these those which
+    who whom whose where while until than so very too first last open turn rotate set make try use let lets its
+    his your yours mine ours am were being having had may might shall"""
 )
-"""Words that no name of a thing is made of: where one is left over, the phrase was not understood."""
+"""Words with a part in the grammar: no unknown noun is any of them."""
 
-CANNOT = {
-    "land": "landing on request",
-    "open": "opening things",
-    "close": "closing things",
-    "push": "pushing things",
-    "pull": "pulling things",
-    "extinguish": "putting out fires",
-    "put out": "putting out fires",
-    "spray": "spraying",
-    "photograph": "taking photographs on request",
-    "take a photo": "taking photographs on request",
-    "take a picture": "taking photographs on request",
-    "take photos": "taking photographs on request",
-    "take pictures": "taking photographs on request",
-    "film": "filming",
-    "follow": "following somebody",
-    "shoot": "weapons",
-    "attack": "harm of any kind",
-    "ram": "harm of any kind",
-    "hit": "harm of any kind",
-    "crash": "harm of any kind",
-    "break": "breaking things",
-    "throw": "throwing things",
-    "repair": "repairs",
-    "call": "calling somebody",
-    "talk": "talking to somebody",
-    "swim": "swimming",
-    "drive": "driving",
-    "dig": "digging",
+_REASONS = {
+    "conditions are not understood": "if unless until till when whenever while otherwise as because whether once",
+    "exceptions are not understood": "except only but apart besides instead rather excluding other than just",
+    "it names a choice: say which one is meant": "or either neither nor whichever any",
+    "negations are only understood for what is to be stayed out of": (
+        "not no never none nothing without nobody don't doesn't isn't aren't won't can't cannot didn't wasn't "
+        "shouldn't mustn't ain't"
+    ),
+    "repetitions are not understood": "again twice thrice times repeat repeatedly once-more another",
+    "time limits and times are not understood": (
+        "second seconds minute minutes hour hours within before after less quickly fast faster hurry soon now "
+        "immediately"
+    ),
+    "numbers of things are not understood: name one thing, or all of them": (
+        "one two three four five six seven eight nine ten both couple few several many half most least second third"
+    ),
+    "what this means is not known here: name the place or the thing": "me us here you wherever whoever whatever",
+    "landing on request is not among what the drone does": "land",
+    "that is not among what the drone does": (
+        "close push pull extinguish spray film follow shoot attack ram hit crash break throw repair call talk "
+        "drive dig ask lead guide"
+    ),
 }
-"""What people ask for and this drone does not do → what that is."""
+REASONS = {word: reason for reason, words in _REASONS.items() for word in words.split()}
+"""Word → why a clause that holds it, and is not understood, is refused."""
+
+
+def singular(noun: str) -> str:
+    """The noun in the singular, as far as a few rules go."""
+    if noun in IRREGULAR:
+        return IRREGULAR[noun]
+    if noun.endswith(("sses", "shes", "ches", "xes")):
+        return noun[:-2]
+    if noun.endswith("ies") and len(noun) > 4:
+        return f"{noun[:-3]}y"
+    return noun[:-1] if noun.endswith("s") and not noun.endswith(("ss", "us")) else noun

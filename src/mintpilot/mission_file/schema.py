@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import Field
+from pydantic import ConfigDict, Field
 
 from mintpilot.mission_file.schema_asking import asking_spec
 from mintpilot.mission_file.schema_base import (
@@ -80,7 +80,7 @@ class PriorsSpec(Spec):
 class GoalSpec(Spec):
     """One step. Give where it is as exactly one of `phrase`, `object`, `room` and `position_m`."""
 
-    action: Literal["go", "pick", "deliver", "look"]
+    action: Literal["go", "pick", "deliver", "look", "count", "photograph", "report"]
     """What is done there."""
     phrase: Words | None = None
     """Words that mean a thing, e.g. `the box`. Several things may fit: that is a knowledge gap."""
@@ -98,6 +98,17 @@ class GoalSpec(Spec):
     """How long the drone stays there, seconds."""
     truth: Name | None = None
     """With a phrase: id of the object that is really meant, for a scripted operator; never used to plan."""
+
+
+class KeepAwaySpec(Spec):
+    """A distance that is to be kept. A wish: where nothing can be flown so, the drone says so and asks."""
+
+    model_config = ConfigDict(validate_by_alias=True, validate_by_name=True)
+
+    thing: Words = Field(alias="from")
+    """From what: `people`, words for things of a kind (`the barrels`), or the id of a region."""
+    metres: Annotated[float, Field(gt=0, le=100)] = 2.0
+    """How far, metres, between the drone's body and it."""
 
 
 class CombinationSpec(Spec):
@@ -155,6 +166,8 @@ class MissionFile(Spec):
     """The steps, in order. Without them they are taken from the instruction."""
     seeks_people: bool | None = None
     """True when everybody who is hurt must be found. Default: as the instruction says."""
+    keep_away: Several[KeepAwaySpec] = ()
+    """Distances to be kept from people, things or regions, besides those that the instruction names."""
     vehicle: VehicleSpec = VehicleSpec()
     """What the vehicle can do."""
     asking: AskingSpec = AskingSpec()

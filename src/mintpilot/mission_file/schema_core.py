@@ -101,4 +101,9 @@ def _reference(goal: GoalSpec, viewpoints: Mapping[str, Vec3], words: Mapping[st
         return Reference(phrase=f"the place at ({x:g}, {y:g})", position_m=(x, y, z))
     if goal.object is not None:
         return Reference(phrase=goal.object, object_id=goal.object)
-    return Reference(phrase=goal.phrase or "", label=goal.label or "", attributes=attributes_of(goal.attributes))
+    return Reference(
+        phrase=goal.phrase or "",
+        label=goal.label or "",
+        attributes=attributes_of(goal.attributes),
+        every=Action(goal.action) is Action.COUNT,
+    )

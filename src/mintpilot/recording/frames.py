@@ -30,10 +30,7 @@ class FrameStore:
         """Writes one picture. Raises `OSError` when it cannot."""
         if len(self._kept) >= MAX_IN_FLIGHT:
             self._drop(sorted(self._kept)[1::2])
-        file = self.file(index)
-        buffer = io.BytesIO()
-        Image.fromarray(frame.rgb).save(buffer, "JPEG", quality=88)
-        file.write_bytes(buffer.getvalue())
+        write_jpeg(self.file(index), frame)
         self._kept.add(index)
 
     def prune(self, referenced: Iterable[int]) -> None:
@@ -52,6 +49,14 @@ class FrameStore:
         for index in list(indices):
             self.file(index).unlink(missing_ok=True)
             self._kept.discard(index)
+
+
+def write_jpeg(file: Path, frame: Frame) -> None:
+    """Writes the picture into that file; makes its folder. Raises `OSError` when it cannot."""
+    buffer = io.BytesIO()
+    Image.fromarray(frame.rgb).save(buffer, "JPEG", quality=88)
+    file.parent.mkdir(parents=True, exist_ok=True)
+    file.write_bytes(buffer.getvalue())
 
 
 def crop_jpeg(file: Path, pixels: tuple[int, int, int, int], *, width: int = 360, height: int = 240) -> bytes | None:

@@ -4,6 +4,7 @@ config.json     what was to be done, with every setting resolved
 events.ndjson   all events exactly, one line each, written as they happen
 record.json     the record; replaced after every decision, final at the end
 frames/         pictures that the drone saw
+photographs/    those that the instruction asked for, one for each thing
 tree.*          the tree as JSON, text, SVG and Graphviz
 topdown.*       map with planned and flown paths
 report.html     all of it for people
@@ -34,9 +35,10 @@ from mintpilot.core.events import (
     PlanChosen,
 )
 from mintpilot.core.ports import Recorder
+from mintpilot.core.task import Action
 from mintpilot.recording.build import build_record, versions
 from mintpilot.recording.event_log import EVENTS_FILE, EventLogWriter
-from mintpilot.recording.frames import FrameStore
+from mintpilot.recording.frames import FrameStore, write_jpeg
 from mintpilot.recording.history import History
 from mintpilot.recording.products import write_products
 from mintpilot.recording.record import MissionRecord, NoticeRecord
@@ -71,6 +73,7 @@ class RunFolder(Recorder):
         self._history = History()
         self._lost: list[str] = []
         self._noted = 0
+        self._photographed = ""
         self._has_config = config is not None
         self._record: MissionRecord | None = None
         if (path / EVENTS_FILE).exists():
@@ -92,8 +95,14 @@ class RunFolder(Recorder):
         self._history.add(event)
         if not isinstance(event, _DERIVED):
             self._guard("an event", lambda: self._events.append(event))
+        if isinstance(event, LegFlown):
+            self._photographed = event.stop_id if event.stop_id.startswith(f"{Action.PHOTOGRAPH}:") else ""
         if isinstance(event, FrameSeen):
             self._guard("a picture", lambda: self._frames.add(event.index, event.frame))
+            if self._photographed:
+                file = self.path / "photographs" / f"{self._photographed.replace(':', '-')}.jpg"
+                self._guard("a photograph", lambda: write_jpeg(file, event.frame))
+                self._photographed = ""
         elif isinstance(event, _DECISIONS):
             self._guard("the record", lambda: self._write_record(_RUNNING))
         if isinstance(event, MissionStarted) and not self._has_config:

@@ -1,5 +1,6 @@
 """Map and instruction → knowledge gaps [u]: what is not known and bears on the task."""
 
 from mintpilot.uncertainty.findings import Findings, find_gaps, frame_problem
+from mintpilot.uncertainty.keep_away import with_keep_away
 
-__all__ = ["Findings", "find_gaps", "frame_problem"]
+__all__ = ["Findings", "find_gaps", "frame_problem", "with_keep_away"]

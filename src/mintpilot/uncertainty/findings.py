@@ -9,10 +9,12 @@ from dataclasses import dataclass, replace
 from mintpilot.core.errors import InputError
 from mintpilot.core.gap import GapKind, KnowledgeGap
 from mintpilot.core.geometry import Vec3
+from mintpilot.core.observation import RegionKind
 from mintpilot.core.plan import PlanningProblem, Stop, VehicleLimits
-from mintpilot.core.semantic_map import Knowledge, SemanticMap
+from mintpilot.core.semantic_map import Knowledge, Region, SemanticMap
 from mintpilot.core.task import Task
 from mintpilot.uncertainty.gaps import obstacle_gaps, presence_gaps
+from mintpilot.uncertainty.keep_away import PREFIX
 from mintpilot.uncertainty.matching import Standpoint
 from mintpilot.uncertainty.targets import bind
 from mintpilot.uncertainty.things import things_of
@@ -61,7 +63,8 @@ def find_gaps(
     bound = bind(task, things, view, finished=finished)
     avoided = {a.kind for a in task.avoid if a.strict or honour_wishes}
     wished = avoided - {a.kind for a in task.avoid if a.strict}
-    gaps = [*bound.gaps.values(), *obstacle_gaps(map, things, prior_passable=prior_passable, leave_out=avoided)]
+    regions = {r.id for r in map.regions if r.kind in avoided or (honour_wishes and r.id.startswith(PREFIX))}
+    gaps = [*bound.gaps.values(), *obstacle_gaps(map, things, prior_passable=prior_passable, leave_out=regions)]
     stops = list(bound.stops)
     if task.seeks_people:
         looked_at = {site.label for stop in stops if not stop.gap for site in stop.sites}
@@ -71,9 +74,13 @@ def find_gaps(
     return Findings(
         gaps=tuple(sorted(told_apart(gaps, start_m), key=lambda gap: gap.id)),
         stops=tuple(_on_layer(stop, map) for stop in stops),
-        problems=tuple(dict.fromkeys(bound.problems)),
-        wishes=tuple(sorted(r.id for r in map.regions if r.kind in wished and r.passable is Knowledge.OPEN)),
+        problems=tuple(dict.fromkeys((*bound.problems, *_heights(task, map)))),
+        wishes=tuple(sorted(r.id for r in map.regions if _is_wish(r, wished) and r.passable is Knowledge.OPEN)),
     )
+
+
+def _is_wish(region: Region, wished: set[RegionKind]) -> bool:
+    return region.kind in wished or region.id.startswith(PREFIX)
 
 
 def frame_problem(
@@ -127,6 +134,18 @@ def _whereabouts(position_m: Vec3, start_m: Vec3, digits: int) -> str:
         if round(abs(offset), digits) > 0:
             parts.append(f"{abs(offset):.{digits}f} m {forth if offset > 0 else back}")
     return f"{' and '.join(parts)} of the drone" if parts else "at the drone"
+
+
+def _heights(task: Task, map: SemanticMap) -> list[str]:
+    """A sentence for each height that a flat map does not have."""
+    lo_m, hi_m = map.frame.box.lo_m[2], map.frame.box.hi_m[2]
+    layer = f"one layer, at {map.frame.box.centre_m[2]:g} m" if map.frame.is_flat else f"from {lo_m:g} to {hi_m:g} m"
+    spare_m = max(0.25, map.frame.resolution_m) if map.frame.is_flat else 0.0
+    return [
+        f"'{goal.reference.phrase}' at a height of {goal.height_m:g} m cannot be flown: the map has {layer}."
+        for goal in task.subgoals
+        if goal.height_m is not None and not lo_m - spare_m <= goal.height_m <= hi_m + spare_m
+    ]
 
 
 def _on_layer(stop: Stop, map: SemanticMap) -> Stop:

@@ -10,7 +10,6 @@ import numpy as np
 
 from mintpilot.core.gap import ABSENT, BLOCKED, PASSABLE, PRESENT, GapKind, KnowledgeGap, obstacle_id, presence_id
 from mintpilot.core.geometry import Vec3
-from mintpilot.core.observation import RegionKind
 from mintpilot.core.plan import Site, Stop
 from mintpilot.core.semantic_map import Knowledge, Region, Room, SemanticMap
 from mintpilot.core.task import Action
@@ -23,9 +22,9 @@ _NO_PRIOR = next(field.default for field in fields(Region) if field.name == "pri
 
 
 def obstacle_gaps(
-    map: SemanticMap, things: Sequence[Thing], *, prior_passable: float, leave_out: Collection[RegionKind] = ()
+    map: SemanticMap, things: Sequence[Thing], *, prior_passable: float, leave_out: Collection[str] = ()
 ) -> list[KnowledgeGap]:
-    """One gap for each region whose passability is open; regions without cells, and of kinds left out, open none."""
+    """One gap for each region whose passability is open; regions without cells, and those left out by id, open none."""
     return [
         KnowledgeGap(
             id=obstacle_id(region.id),
@@ -37,7 +36,7 @@ def obstacle_gaps(
             position_m=region_middle_m(map, region),
         )
         for region in map.regions
-        if region.passable is Knowledge.OPEN and region.cells.size and region.kind not in leave_out
+        if region.passable is Knowledge.OPEN and region.cells.size and region.id not in leave_out
     ]
 
 

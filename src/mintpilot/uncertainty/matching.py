@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from mintpilot.core.geometry import Vec3
 from mintpilot.core.observation import Attribute
 from mintpilot.core.task import Reference
-from mintpilot.uncertainty.things import Thing, name_of, synonyms, value_of, values_of
+from mintpilot.uncertainty.things import ROOM, Thing, name_of, synonyms, value_of, values_of
 
 SIDE = "side"
 """Attribute of a reference: ``left`` or ``right`` of the line from the start to the middle of the map."""
@@ -21,6 +21,8 @@ NEAR = "near"
 """Attribute of a reference: the words for a landmark within `NEAR_M`."""
 EXTREME = "extreme"
 """Attribute of a reference: the most of its kind, one of `EXTREMES`."""
+KIND = "kind"
+"""Attribute of a reference to a room: what the room is called by: ``kitchen``, ``storage room``."""
 NEAR_M = 3.0
 _TIE = 0.05
 
@@ -101,13 +103,17 @@ def _has(thing: Thing, attribute: Attribute, things: Sequence[Thing], view: Stan
     if name == NEAR:
         marks = [t for t in things if t.id != thing.id and _is_called(t, value)]
         return any(math.dist(t.position_m, thing.position_m) <= NEAR_M for t in marks) if marks else None
+    if name == KIND:
+        if set(value.split()) <= thing.called:
+            return True
+        return None if thing.name in ("", ROOM) else False
     known = values_of(thing, name)
-    if value in known:
+    if value in known or (not name and value in thing.called):
         return True
     return False if known and name else None
 
 
 def _is_called(thing: Thing, words: str) -> bool:
     wanted = set(words.split()) - {"the", "a", "an"}
-    own = synonyms(thing.label) | values_of(thing, "")
-    return bool(wanted & synonyms(thing.label)) and wanted <= own
+    own = synonyms(thing.label) | values_of(thing, "") | thing.called
+    return bool(wanted & (synonyms(thing.label) | {thing.name})) and wanted <= own

@@ -15,7 +15,9 @@ from mintpilot.uncertainty.gaps import LOOK_REACH_M
 from mintpilot.uncertainty.matching import Standpoint, match
 from mintpilot.uncertainty.things import ROOM, Thing, middle_m, nearest_first, synonyms
 
-_REACH_M = {Action.GO: 1.5, Action.PICK: 1.2, Action.DELIVER: 1.5, Action.LOOK: 1.5}
+_REACH_M = {Action.PICK: 1.2, Action.COUNT: 2.5, Action.PHOTOGRAPH: 2.5, Action.REPORT: 2.5}
+"""From how far a step can be done where that is not `_NEAR_M`, metres."""
+_NEAR_M = 1.5
 _POSITION_REACH_M = 0.75
 PERSON = "person"
 _PRONOUNS = frozenset({"it", "him", "her", "them", "there", "that", "this", "one"})
@@ -45,7 +47,7 @@ class Binding:
         if not found:
             return
         gap = _gap(reference, first, found, self.things, self.view) if len(found) > 1 else None
-        sites = tuple(_site(thing, subgoal.action, value=thing.id if gap else "") for thing in found)
+        sites = tuple(_site(thing, subgoal, value=thing.id if gap else "") for thing in found)
         self.stops.append(_stop(stop_id, subgoal, sites, gap.id if gap else ""))
         if gap:
             self.gaps[gap.id] = gap
@@ -59,7 +61,7 @@ class Binding:
         left = [t for t in found if not t.searched and f"{stop_id}:{t.id}" not in self.finished]
         here_m = self.stops[-1].sites[0].position_m if self.stops else self.view.start_m
         for thing in nearest_first(left, here_m):
-            self.stops.append(_stop(f"{stop_id}:{thing.id}", subgoal, (_site(thing, subgoal.action),)))
+            self.stops.append(_stop(f"{stop_id}:{thing.id}", subgoal, (_site(thing, subgoal),)))
 
     def _found(self, reference: Reference, *, told: bool = True) -> tuple[Thing, ...]:
         if reference.object_id:
@@ -133,16 +135,21 @@ def _gap(
     )
 
 
-def _site(thing: Thing, action: Action, value: str = "") -> Site:
+def _site(thing: Thing, subgoal: SubGoal, value: str = "") -> Site:
+    x, y, z = thing.goal_m
+    place = (x, y, z if subgoal.height_m is None else subgoal.height_m)
     if thing.label == ROOM:
-        return Site(position_m=thing.goal_m, reach_m=LOOK_REACH_M, value=value, label=thing.id)
+        return Site(position_m=place, reach_m=LOOK_REACH_M, value=value, label=thing.id)
     half_m = math.hypot(thing.size_m[0], thing.size_m[1]) / 2
-    reach_m = _REACH_M[action] + max(0.0, half_m - 0.5)
-    return Site(position_m=thing.goal_m, reach_m=reach_m, value=value, label=thing.id)
+    reach_m = _REACH_M.get(subgoal.action, _NEAR_M) + max(0.0, half_m - 0.5)
+    return Site(position_m=place, reach_m=reach_m, value=value, label=thing.id)
 
 
 def _stop(stop_id: str, subgoal: SubGoal, sites: tuple[Site, ...], gap: str = "") -> Stop:
-    return Stop(id=stop_id, action=subgoal.action, sites=sites, gap=gap, dwell_s=subgoal.dwell_s)
+    """What is counted or reported in a room is looked for from its viewpoint."""
+    in_room = subgoal.reference.label == ROOM and subgoal.action in (Action.COUNT, Action.REPORT)
+    action = Action.LOOK if in_room else subgoal.action
+    return Stop(id=stop_id, action=action, sites=sites, gap=gap, dwell_s=subgoal.dwell_s)
 
 
 def _slug(phrase: str) -> str:

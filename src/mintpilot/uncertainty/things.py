@@ -18,11 +18,12 @@ _ALIKE = (
     ("person", "victim", "casualty", "survivor", "patient", "human", "man", "woman", "worker"),
     ("barrel", "drum", "cask"),
     ("rack", "shelf", "shelving", "shelves"),
-    (ROOM, "closed room", "chamber", "office"),
+    (ROOM, "closed room", "chamber"),
     ("door", "gate", "doorway"),
     ("fire", "flame", "flames", "blaze"),
     ("pillar", "column", "post"),
 )
+_AFTER_NOUN = frozenset({"with", "next", "near", "on", "at", "in", "by", "behind", "beside", "of", "to", "from"})
 _NAMES = {"color": "colour", "hair color": "hair colour", "eye color": "eye colour"}
 _VALUES = {
     "gray": "grey", "big": "large", "huge": "large", "little": "small", "tiny": "small", "round": "spherical",
@@ -44,6 +45,10 @@ class Thing:
     """Where the drone goes for it: its centre, or for a room the viewpoint in front of its door."""
     description: str = ""
     """Given by the map, for rooms; empty: made from the attributes."""
+    called: frozenset[str] = frozenset()
+    """For rooms: the words of their description, e.g. ``closed kitchen``."""
+    name: str = ""
+    """For rooms: the noun that their description calls them by: ``kitchen``, or only ``room``."""
     searched: bool = False
     """For rooms: already looked into."""
     behind_door: bool = False
@@ -96,11 +101,20 @@ def things_of(map: SemanticMap) -> tuple[Thing, ...]:
             size_m=r.door_m.size_m,
             goal_m=r.viewpoint_m,
             description=r.description,
+            called=frozenset(r.description.lower().split()),
+            name=_name(r.description),
             searched=r.searched,
         )
         for r in map.rooms
     )
     return tuple(sorted((*objects, *rooms), key=lambda thing: thing.id))
+
+
+def _name(description: str) -> str:
+    """The noun of a description: the last word before ``with``, ``next to`` and the like."""
+    words = description.lower().split()
+    end = next((i for i, word in enumerate(words) if i and word in _AFTER_NOUN), len(words))
+    return words[end - 1] if words else ROOM
 
 
 def _is_inside(position_m: Vec3, room: Room) -> bool:

@@ -1,0 +1,67 @@
+"""How instructions are read, against references. `python -m bench.instructions [--llm NAME] [--file F]`."""
+
+from __future__ import annotations
+
+import argparse
+import re
+from pathlib import Path
+
+from bench.sections import ROOT
+from mintpilot.assembly.registry import load
+from mintpilot.benchmark.instruction_trials import Score, read_rows, score, upper_bound
+from mintpilot.core.errors import InputError
+from mintpilot.language.instruction import parse_instruction
+from mintpilot.language.instruction_model import parse_with_model
+
+DATA = ROOT / "bench" / "data" / "instructions.tsv"
+_HOME_M = (0.0, 0.0, 1.0)
+
+
+def report(name: str, found: Score) -> None:
+    """Prints the figures."""
+    wrong = len(found.wrong)
+    print(f"{name}: n {found.n}; silently wrong {wrong} (at most {upper_bound(wrong, found.n):.2%} at 95 %); "
+          f"within the verbs {found.within}, of those right {found.right} ({found.right / found.within:.1%}), "
+          f"refused {len(found.refused)}")  # fmt: skip
+    for line in found.wrong:
+        print(f"  wrong: {line}")
+
+
+def plain_list(file: Path) -> None:
+    """Counts what is done of a list without references, and prints what was read for looking through by eye."""
+    lines = [line.removeprefix("Task:").strip() for line in file.read_text("utf-8").splitlines()]
+    raw = file.read_text("utf-8")
+    if "\nTask:" in raw:
+        lines = re.findall(r"^Task: (.+)$", raw, re.MULTILINE)
+    texts, done = [line for line in lines if line], 0
+    for text in texts:
+        try:
+            task = parse_instruction(text, home_m=_HOME_M)
+        except InputError:
+            continue
+        done += 1
+        print(f"  {text} | {' ; '.join(step.text for step in task.steps)} | out: {', '.join(task.keep_out)}")
+    print(f"{file.name}: n {len(texts)}, done {done}, refused {len(texts) - done}")
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--llm", default="")
+    parser.add_argument("--file", type=Path)
+    parser.add_argument("--refused", action="store_true", help="print what was refused though it is within the verbs")
+    options = parser.parse_args()
+    if options.file:
+        plain_list(options.file)
+        return
+    found = score(read_rows(DATA), lambda text: parse_instruction(text, home_m=_HOME_M))
+    report("rules", found)
+    if options.refused:
+        print(*(f"  refused: {line}" for line in found.refused), sep="\n")
+    if options.llm:
+        model = load("language", options.llm)()
+        helped = score(read_rows(DATA), lambda text: parse_with_model(text, model, home_m=_HOME_M, timeout_s=60.0))
+        report(options.llm, helped)
+
+
+if __name__ == "__main__":
+    main()
