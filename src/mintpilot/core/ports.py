@@ -5,7 +5,7 @@ All are synchronous; an adapter that needs a thread or an event loop hides it an
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Protocol, TypeAlias
 
@@ -13,7 +13,7 @@ from mintpilot.core.events import Event
 from mintpilot.core.gap import Assumptions, Belief, KnowledgeGap
 from mintpilot.core.geometry import Bools, Floats, Ints
 from mintpilot.core.mission import AskingSettings, Verdict
-from mintpilot.core.observation import Detection, Frame
+from mintpilot.core.observation import Detection, Frame, NameGuess, RawFrame, Segment
 from mintpilot.core.plan import Plan, PlanningProblem, Stop
 from mintpilot.core.query import Answer, Meaning, Query, Question
 from mintpilot.core.trajectory import FlightLog, Trajectory, VehicleState
@@ -27,6 +27,44 @@ class Perception(Protocol):
         """What the frame shows; ``index`` goes into `Detection.frame_index`.
 
         Frames without any usable depth give no detections. Raises `DeviceError` when a model or its server fails.
+        """
+        ...
+
+
+class Namer(Protocol):
+    """Says what segments may be. Several are asked about the same segments, and their evidence is put together."""
+
+    def names(self, frame: Frame, segments: Sequence[Segment]) -> tuple[tuple[NameGuess, ...], ...]:
+        """For each segment the names that it may have, with calibrated probabilities that sum to at most 1.
+
+        What is missing to 1 is for none of them. A namer that knows nothing of a segment gives no name for it. Raises
+        `DeviceError` when a model or its server fails.
+        """
+        ...
+
+
+class FrameSource(Protocol):
+    """Gives RGB-D pictures: a recording, a bag, a camera, a simulator."""
+
+    @property
+    def z_is_up(self) -> bool:
+        """Whether the source's own world has z up by convention (ROS, TUM); False where that is not known."""
+        ...
+
+    def frames(self) -> Iterator[RawFrame]:
+        """The pictures in the order in which they were taken. Called once.
+
+        Raises:
+            MapError: the recording, or a picture of it, cannot be used; the message says which and why.
+            DeviceError: a live camera is gone.
+            MissingPartError: the package that reads this kind of source is not installed.
+        """
+        ...
+
+    def remarks(self) -> tuple[str, ...]:
+        """What the person should know of how it was read (assumed lens, frames left out), a sentence each.
+
+        Complete once `frames` is exhausted.
         """
         ...
 
@@ -312,9 +350,11 @@ __all__ = [
     "Completion",
     "Decision",
     "Fly",
+    "FrameSource",
     "ImpactMetric",
     "Judge",
     "LanguageModel",
+    "Namer",
     "Operator",
     "Perception",
     "PlanSpace",

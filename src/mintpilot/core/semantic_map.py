@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from mintpilot.core.errors import MapError
 from mintpilot.core.geometry import Box, GridFrame, Ints, Vec3, frozen
-from mintpilot.core.observation import Attribute, RegionKind
+from mintpilot.core.observation import Attribute, NameGuess, RegionKind
 
 
 class Cell(IntEnum):
@@ -47,6 +47,8 @@ class MapObject:
     """In how many frames it was seen."""
     best_view: tuple[int, int, int, int, int] | None = None
     """Provenance: frame index and pixel box (left, top, right, bottom) of its largest view."""
+    names: tuple[NameGuess, ...] = ()
+    """What it may be, likeliest first; what is missing to 1 is for none of them. Empty: it is what ``label`` says."""
 
     @property
     def position_m(self) -> Vec3:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mintpilot.core.geometry import Box, GridFrame, Vec3
-from mintpilot.core.observation import RegionKind
+from mintpilot.core.observation import OBJECT, RegionKind
 from mintpilot.core.semantic_map import Cell, Knowledge, MapObject, Region, Room, SemanticMap
 from mintpilot.mapping.identity import Names, match
 from mintpilot.mapping.objects import Track, closeness
@@ -43,7 +43,7 @@ def fused_objects(tracks: Sequence[Track], draft: Draft) -> tuple[MapObject, ...
     fires = [t for t in kept if t.label == "fire"]
     kept = [t for t in kept if not any(_limb_of(t, p) for p in people) and not any(_foot_of(t, f) for f in fires)]
     old = draft.previous.objects if draft.previous is not None else ()
-    pairs = match([[closeness(t.box_m, o.box_m) if t.label == o.label else 0.0 for o in old] for t in kept])
+    pairs = match([[closeness(t.box_m, o.box_m) if _one_kind(t, o) else 0.0 for o in old] for t in kept])
     for thing in old:
         draft.names.seen(thing.id)
     objects = [t.as_object(old[pairs[i]].id if i in pairs else draft.names.new(t.label)) for i, t in enumerate(kept)]
@@ -144,7 +144,7 @@ def _credible(track: Track, settings: MappingSettings) -> bool:
 
 def _limb_of(track: Track, person: Track) -> bool:
     """True for a low scrap beside somebody lying: an arm or a leg that was seen apart from the rest."""
-    if track.label == "person" or track.box_m.hi_m[2] > 0.4 or len(track.frames) > len(person.frames):
+    if track.is_segment or track.label == "person" or track.box_m.hi_m[2] > 0.4 or len(track.frames) > len(person.frames):
         return False
     a, b = track.box_m.centre_m, person.box_m.centre_m
     return float(np.hypot(a[0] - b[0], a[1] - b[1])) < 1.1
@@ -160,7 +160,7 @@ def _foot_of(track: Track, fire: Track) -> bool:
 
 def _roofed(track: Track, draft: Draft) -> bool:
     """True for goods on a shelf or fragments of a rack: something solid is right above most of the thing."""
-    if track.label != "box":
+    if track.label != "box" or track.is_segment:
         return False
     box = track.box_m
     lo = (box.lo_m[0], box.lo_m[1], box.hi_m[2] + 1.5 * draft.frame.resolution_m)
@@ -171,9 +171,14 @@ def _roofed(track: Track, draft: Draft) -> bool:
     return float((draft.cells[column] == Cell.OCCUPIED).mean()) > 0.2
 
 
+def _one_kind(track: Track, thing: MapObject) -> bool:
+    """Whether a track may be a thing of old: bodies change their names as more is seen of them."""
+    return track.label == thing.label or (track.is_segment and (thing.label == OBJECT or bool(thing.names)))
+
+
 def _gone(thing: MapObject, tracks: Sequence[Track], draft: Draft) -> bool:
     """True when a thing of old was absorbed by a track, or its place is now seen free."""
-    if any(t.label == thing.label and closeness(t.box_m, thing.box_m) > 0 for t in tracks):
+    if any(_one_kind(t, thing) and closeness(t.box_m, thing.box_m) > 0 for t in tracks):
         return True
     inside = draft.cells[cells_in(draft.frame, thing.box_m)]
     return inside.size > 0 and float((inside == Cell.FREE).mean()) > 0.9
