@@ -22,7 +22,8 @@ from mintpilot.mission_file.schema_base import attributes_of, place_of
 from mintpilot.mission_file.schema_core import asking_of, correlations_of, limits_of, mission_of, task_of, truths_of
 from mintpilot.mission_file.schema_map import map_of
 from mintpilot.mission_file.schema_scene import ClosedRoomSpec, PersonSpec, SceneSpec
-from mintpilot.mission_file.schema_world import MapWorld, ScenarioWorld, SceneWorld
+from mintpilot.mission_file.schema_world import ScenarioWorld, SceneWorld, SeenWorld
+from mintpilot.mission_file.seen_map import load_map
 from mintpilot.simulation.map_scene import scene_of_map
 from mintpilot.simulation.scenarios import Scenario, make_scenario
 from mintpilot.simulation.scene import ClosedRoom, FlightRules, Person, Scene, Shape, Smoke, Solid
@@ -78,7 +79,11 @@ def build_world(file: MissionFile, *, base: Path, seed: int | None, parse: Parse
         return _from_scenario(file, world, drawn, parse)
     if isinstance(world, SceneWorld):
         return _from_scene(file, replace(scene_of(world.scene, file.name), seed=drawn), drawn, parse)
-    return _from_map(file, world, base, drawn, parse)
+    if isinstance(world, SeenWorld):
+        seen, begin = load_map(base / world.seen)
+        return _from_map(file, seen, world.start_m or begin, None, drawn, parse)
+    start = place_of(world.start_m, world.height_m)
+    return _from_map(file, map_of(world, base, file.priors), start, world.height_m, drawn, parse)
 
 
 def _from_scenario(file: MissionFile, world: ScenarioWorld, seed: int, parse: Parse) -> World:
@@ -124,12 +129,12 @@ def _assembled(file: MissionFile, mission: Mission, scene: Scene, rules: FlightR
     )
 
 
-def _from_map(file: MissionFile, world: MapWorld, base: Path, seed: int, parse: Parse) -> World:
-    map_ = map_of(world, base, file.priors)
-    start = place_of(world.start_m, world.height_m)
+def _from_map(
+    file: MissionFile, map_: SemanticMap, start: Vec3, layer_m: float | None, seed: int, parse: Parse
+) -> World:
     truths = truths_of(file)
     mission = mission_of(file, start_m=start, volume=map_.frame.box)
-    task = task_of(file, layer_m=world.height_m) or parse(mission.instruction, home_m=mission.start_m)
+    task = (task_of(file, layer_m=layer_m) if layer_m is not None else task_of(file)) or parse(mission.instruction, home_m=mission.start_m)
     wanted = wanted_of(map_, task, truths, start)
     scene = scene_of_map(
         map_,

@@ -8,7 +8,7 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Annotated, Literal, TypeAlias
 
-from cyclopts import App, CycloptsError, Parameter
+from cyclopts import App, CycloptsError, Parameter, validators
 from rich.console import Console
 
 from mintpilot.cli.bench import bench
@@ -176,6 +176,71 @@ def plan(
 
     return guarded(
         lambda: think(mission, strategy=strategy, seed=seed, llm=llm, lang=lang, as_json=json),
+        as_json=json,
+        debug=debug,
+    )
+
+
+@app.command(
+    help_epilogue=examples(
+        "mintpilot see recording/ --instruction 'bring me the can' --out seen",
+        "mintpilot see --color color.png --depth depth.png --intrinsics camera.json --depth-unit 0.001 --json",
+        "mintpilot see sim:medicine-boxes",
+    )
+)
+def see(
+    source: str = "",
+    /,
+    *,
+    instruction: str | None = None,
+    color: Path | None = None,
+    depth: Path | None = None,
+    intrinsics: Path | None = None,
+    depth_unit: float | None = None,
+    every: Annotated[int, Parameter(validator=validators.Number(gte=1))] = 1,
+    longest: Annotated[int, Parameter(validator=validators.Number(gte=1))] = 200,
+    perception: str = "segments",
+    seed: Seed = None,
+    out: Path | None = None,
+    json: Json = False,
+    debug: Flag = False,
+) -> ExitCode:
+    """Make map, objects and gaps of pictures that were taken elsewhere, without a flight.
+
+    Its folder is a world for plan and run: `world: {seen: DIR}` in a mission file.
+
+    Args:
+        source: A folder in TUM layout, or with color/, depth/ and trajectory.log; a ROS 2 bag; realsense:;
+            sim:SCENARIO. Not for a single picture.
+        instruction: What is to be done: what bears on it is listed as not known.
+        color: A single picture's colours; goes with --depth.
+        depth: A single picture's depth, 16 bit.
+        intrinsics: The lens, JSON or YAML. Default: the source's own, else a Kinect's.
+        depth_unit: Metres in one step of the depth. Default: 0.001, for TUM 0.0002.
+        every: Use each n-th frame only.
+        longest: Use no more frames than this.
+        perception: Who makes objects of pictures: segments, geometric, or a plug-in's.
+        seed: Of simulated sources. Default: 0.
+        out: Folder for map and report.
+        json: Print one JSON object, and nothing else, on standard output.
+        debug: Show the traceback of an error.
+    """
+    from mintpilot.cli.seeing import see_pictures
+    from mintpilot.core.ports import SourceOptions
+
+    if not source and color is None and depth is None:
+        return fail("see needs a source, or --color and --depth; see mintpilot see --help", as_json=json)
+    options = SourceOptions(
+        color=color,
+        depth=depth,
+        intrinsics=intrinsics,
+        depth_unit_m=depth_unit,
+        every=every,
+        longest=longest,
+        seed=seed or 0,
+    )
+    return guarded(
+        lambda: see_pictures(source, options, perception=perception, instruction=instruction, out=out, as_json=json),
         as_json=json,
         debug=debug,
     )

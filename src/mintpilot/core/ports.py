@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Protocol, TypeAlias
 
 from mintpilot.core.events import Event
@@ -41,6 +42,26 @@ class Namer(Protocol):
         `DeviceError` when a model or its server fails.
         """
         ...
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SourceOptions:
+    """What the command line or a caller knows about the pictures. None: found out, or assumed and said."""
+
+    color: Path | None = None
+    """Colour picture of a single view."""
+    depth: Path | None = None
+    """Depth picture of a single view."""
+    intrinsics: Path | None = None
+    """File with the lens, JSON or YAML."""
+    depth_unit_m: float | None = None
+    """Metres in one step of a depth picture of whole numbers: 0.001 for millimetres, 0.0002 for TUM's recordings."""
+    every: int = 1
+    """Each n-th frame is used."""
+    longest: int = 200
+    """No more frames than this are used."""
+    seed: int = 0
+    """For simulated sources."""
 
 
 class FrameSource(Protocol):
@@ -364,6 +385,7 @@ __all__ = [
     "QuerySituation",
     "Recorder",
     "Situation",
+    "SourceOptions",
     "Strategy",
     "TruthOracle",
     "Understand",

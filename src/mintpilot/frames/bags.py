@@ -9,11 +9,10 @@ from typing import Any
 
 from mintpilot.core.errors import MapError, MissingPartError
 from mintpilot.core.observation import CameraModel, RawFrame
-from mintpilot.core.ports import FrameSource
+from mintpilot.core.ports import FrameSource, SourceOptions
 from mintpilot.frames.bag_messages import camera_of, picture_of, stamp_s
 from mintpilot.frames.bag_transforms import Transforms
 from mintpilot.frames.intrinsics import read_intrinsics
-from mintpilot.frames.options import SourceOptions
 from mintpilot.frames.pictures import MILLIMETRE_M, as_color, as_depth, joined
 
 SAME_S = 0.05

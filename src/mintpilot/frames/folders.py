@@ -13,9 +13,8 @@ import numpy as np
 from mintpilot.core.errors import MapError
 from mintpilot.core.geometry import Floats
 from mintpilot.core.observation import CameraModel, RawFrame
-from mintpilot.core.ports import FrameSource
+from mintpilot.core.ports import FrameSource, SourceOptions
 from mintpilot.frames.intrinsics import kinect, read_intrinsics
-from mintpilot.frames.options import SourceOptions
 from mintpilot.frames.pictures import joined, read_color, read_depth
 from mintpilot.frames.rotations import pose_of
 from mintpilot.frames.single import ASSUMED_LENS

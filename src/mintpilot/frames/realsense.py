@@ -9,9 +9,8 @@ import numpy as np
 
 from mintpilot.core.errors import DeviceError, MissingPartError
 from mintpilot.core.observation import RawFrame
-from mintpilot.core.ports import FrameSource
+from mintpilot.core.ports import FrameSource, SourceOptions
 from mintpilot.frames.intrinsics import checked_camera
-from mintpilot.frames.options import SourceOptions
 from mintpilot.frames.pictures import as_color, as_depth, joined
 
 WAIT_MS = 5000

@@ -6,9 +6,8 @@ from collections.abc import Iterator
 
 from mintpilot.core.errors import MapError
 from mintpilot.core.observation import RawFrame
-from mintpilot.core.ports import FrameSource
+from mintpilot.core.ports import FrameSource, SourceOptions
 from mintpilot.frames.intrinsics import kinect, read_intrinsics
-from mintpilot.frames.options import SourceOptions
 from mintpilot.frames.pictures import joined, read_color, read_depth
 
 

@@ -12,7 +12,7 @@ from mintpilot.core.geometry import Box, GridFrame, Vec3
 from mintpilot.core.observation import OBJECT, RegionKind
 from mintpilot.core.semantic_map import Cell, Knowledge, MapObject, Region, Room, SemanticMap
 from mintpilot.mapping.identity import Names, match
-from mintpilot.mapping.objects import Track, closeness
+from mintpilot.mapping.objects import Track, closeness, same_body
 from mintpilot.mapping.rooms import same_door, viewpoint_of
 from mintpilot.mapping.settings import MappingSettings
 from mintpilot.mapping.smoke import Cloud, cells_in
@@ -38,12 +38,12 @@ class Draft:
 def fused_objects(tracks: Sequence[Track], draft: Draft) -> tuple[MapObject, ...]:
     """Objects seen often or surely enough, doors left out; ids from the previous map by nearness."""
     settings = draft.settings
-    kept = [t for t in tracks if t.label != "door" and _credible(t, settings) and not _roofed(t, draft)]
+    kept = [t for t in tracks if (t.label != "door" or t.is_segment) and _credible(t, settings) and not _roofed(t, draft)]
     people = [t for t in kept if t.label == "person"]
     fires = [t for t in kept if t.label == "fire"]
     kept = [t for t in kept if not any(_limb_of(t, p) for p in people) and not any(_foot_of(t, f) for f in fires)]
     old = draft.previous.objects if draft.previous is not None else ()
-    pairs = match([[closeness(t.box_m, o.box_m) if _one_kind(t, o) else 0.0 for o in old] for t in kept])
+    pairs = match([[_nearness(t, o) for o in old] for t in kept])
     for thing in old:
         draft.names.seen(thing.id)
     objects = [t.as_object(old[pairs[i]].id if i in pairs else draft.names.new(t.label)) for i, t in enumerate(kept)]
@@ -95,7 +95,7 @@ def fused_regions(clouds: Sequence[Cloud], draft: Draft, prior_passable: float) 
 def fused_rooms(tracks: Sequence[Track], draft: Draft, prior_occupied: float) -> tuple[Room, ...]:
     """One room per closed door, with the answer and the search of the previous map; rooms of old stay."""
     least, sure = draft.settings.door_sightings, draft.settings.sure_door
-    doors = [t for t in tracks if t.label == "door" and (len(t.frames) >= least or t.surest >= sure)]
+    doors = [t for t in tracks if t.label == "door" and not t.is_segment and (len(t.frames) >= least or t.surest >= sure)]
     old = draft.previous.rooms if draft.previous is not None else ()
     for room in old:
         draft.names.seen(room.id)
@@ -171,14 +171,16 @@ def _roofed(track: Track, draft: Draft) -> bool:
     return float((draft.cells[column] == Cell.OCCUPIED).mean()) > 0.2
 
 
-def _one_kind(track: Track, thing: MapObject) -> bool:
-    """Whether a track may be a thing of old: bodies change their names as more is seen of them."""
-    return track.label == thing.label or (track.is_segment and (thing.label == OBJECT or bool(thing.names)))
+def _nearness(track: Track, thing: MapObject) -> float:
+    """How likely a track is a thing of old, 0 or less for not at all. Bodies change their names as more is seen."""
+    if track.is_segment:
+        return same_body(track.box_m, thing.box_m) if thing.label == OBJECT or thing.names else 0.0
+    return closeness(track.box_m, thing.box_m) if track.label == thing.label else 0.0
 
 
 def _gone(thing: MapObject, tracks: Sequence[Track], draft: Draft) -> bool:
     """True when a thing of old was absorbed by a track, or its place is now seen free."""
-    if any(_one_kind(t, thing) and closeness(t.box_m, thing.box_m) > 0 for t in tracks):
+    if any(_nearness(t, thing) > 0 for t in tracks):
         return True
     inside = draft.cells[cells_in(draft.frame, thing.box_m)]
     return inside.size > 0 and float((inside == Cell.FREE).mean()) > 0.9

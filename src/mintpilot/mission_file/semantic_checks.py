@@ -9,9 +9,10 @@ from pathlib import Path
 
 from mintpilot.mission_file.form_checks import nearest, show
 from mintpilot.mission_file.schema import CorrelationSpec, GoalSpec, MissionFile
-from mintpilot.mission_file.schema_world import MapWorld, SceneWorld
+from mintpilot.mission_file.schema_world import MapWorld, SceneWorld, SeenWorld
 from mintpilot.mission_file.semantic_checks_map import map_faults
 from mintpilot.mission_file.semantic_checks_scene import scene_faults
+from mintpilot.mission_file.semantic_checks_seen import seen_faults
 from mintpilot.mission_file.yaml_places import Fault, Path_
 
 _VALUES = {"obstacle": ("passable", "blocked"), "presence": ("present", "absent")}
@@ -22,10 +23,12 @@ def contradictions(mission: MissionFile, base: Path) -> Iterator[Fault]:
     yield from _goal_faults(mission)
     yield from _truth_faults(mission)
     yield from _correlation_faults(mission)
+    if isinstance(mission.world, MapWorld | SeenWorld) and mission.survey is not None:
+        yield _fault(("survey",), "a given map needs no survey flight; remove 'survey'")
     if isinstance(mission.world, MapWorld):
-        if mission.survey is not None:
-            yield _fault(("survey",), "a given map needs no survey flight; remove 'survey'")
         yield from map_faults(mission, mission.world, base)
+    elif isinstance(mission.world, SeenWorld):
+        yield from seen_faults(mission, mission.world, base)
     elif isinstance(mission.world, SceneWorld):
         yield from scene_faults(mission.world.scene)
 
@@ -52,6 +55,8 @@ def _goal_faults(mission: MissionFile) -> Iterator[Fault]:
 
 def _goal_names(mission: MissionFile, goal: GoalSpec, path: Path_) -> Iterator[Fault]:
     world = mission.world
+    if isinstance(world, SeenWorld):
+        return  # its things are known to its own checks
     if not isinstance(world, MapWorld):
         for key in ("object", "room", "truth"):
             if getattr(goal, key) is not None:
@@ -71,6 +76,8 @@ def _goal_names(mission: MissionFile, goal: GoalSpec, path: Path_) -> Iterator[F
 
 
 def _truth_faults(mission: MissionFile) -> Iterator[Fault]:
+    if isinstance(mission.world, SeenWorld):
+        return  # its things are known to its own checks
     if not isinstance(mission.world, MapWorld):
         if mission.truth:
             yield _fault(("truth",), "this world has its own truth; remove 'truth', or write it into the scene")

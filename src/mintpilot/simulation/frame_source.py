@@ -10,7 +10,7 @@ from scipy.ndimage import minimum_filter
 
 from mintpilot.core.geometry import Bools, Floats, Vec3
 from mintpilot.core.observation import RawFrame
-from mintpilot.core.ports import FrameSource
+from mintpilot.core.ports import FrameSource, SourceOptions
 from mintpilot.core.semantic_map import Cell
 from mintpilot.simulation.engine import load_mujoco
 from mintpilot.simulation.render import SceneRenderer
@@ -35,20 +35,17 @@ class SimulatedPictures(FrameSource):
     """Pictures of a built-in scenario, with true poses.
 
     Args:
-        scenario: name of the generator; see `mintpilot.simulation.scenarios`.
-        seed: draws the world and the sensor's noise.
+        where: name of the generator; see `mintpilot.simulation.scenarios`.
+        options: ``seed`` draws the world and the sensor's noise, ``longest`` bounds the number of frames.
         size: width and height, pixels.
-        longest: no more frames than this.
 
     Raises:
         UnknownNameError: there is no such scenario.
     """
 
-    def __init__(
-        self, scenario: str, *, seed: int = 0, size: tuple[int, int] = (320, 240), longest: int = 300
-    ) -> None:
-        self._scene: Scene = make_scenario(scenario, seed).scene
-        self._seed, self._size, self._longest = seed, size, longest
+    def __init__(self, where: str, options: SourceOptions, *, size: tuple[int, int] = (320, 240)) -> None:
+        self._scene: Scene = make_scenario(where, options.seed).scene
+        self._seed, self._size, self._longest = options.seed, size, options.longest
 
     @property
     def z_is_up(self) -> bool:
