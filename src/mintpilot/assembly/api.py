@@ -111,6 +111,7 @@ def run_mission(
     base: Path | None = None,
     llm: str | LanguageModel | None = None,
     lang: str | None = None,
+    perception: str | None = None,
 ) -> MissionRecord:
     """Flies a mission and keeps what happened.
 
@@ -127,6 +128,7 @@ def run_mission(
         llm: language model by its registered name, or one that was made already (it is closed in the end); default: as
             the file says, and that is none.
         lang: in which questions are asked; default: as the file says.
+        perception: registered name of what makes objects of pictures; default: as the file says.
 
     Returns:
         The record. How the mission ended is `MissionRecord.outcome`; an ending short of success is no exception.
@@ -137,7 +139,9 @@ def run_mission(
         MissingPartError: MuJoCo is chosen, or a language model, but not installed.
     """
     file, folder = _opened(mission, base)
-    choices = Choices(strategy=strategy, vehicle=_vehicle(vehicle))
+    choices = Choices(
+        strategy=strategy, vehicle=_vehicle(vehicle), perception=perception or file.perception.use
+    )
     with talk_for(file.language, llm=llm, lang=lang) as talk:
         world = build_world(file, base=folder, seed=seed, parse=talk.parse)
         person = _operator(operator, world, file, talk)

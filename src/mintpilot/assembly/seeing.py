@@ -10,7 +10,7 @@ import numpy as np
 from mintpilot.assembly.registry import load
 from mintpilot.assembly.seen_report import GapSeen, SeenReport, gap_seen, report_of
 from mintpilot.core.errors import MapError, RecordError
-from mintpilot.core.geometry import Box, Floats, GridFrame, Vec3
+from mintpilot.core.geometry import Floats, GridFrame, Vec3
 from mintpilot.core.observation import Frame
 from mintpilot.core.plan import VehicleLimits
 from mintpilot.core.ports import FrameSource, Perception
@@ -86,7 +86,7 @@ def see(
 
 
 def gaps_of(map_: SemanticMap, instruction: str | None, *, start_m: Vec3) -> tuple[list[GapSeen], list[str]]:
-    """What is not known: what may be a person, and with an instruction what bears on it; and what it speaks of in vain."""
+    """What may be a person, and with an instruction what is not known that bears on it; and what it speaks of in vain."""
     gaps = [gap_seen(gap, question=f"Is that a person: {gap.description}?") for gap in doubtful_people(map_.objects)]
     if instruction is None:
         return gaps, []

@@ -162,6 +162,4 @@ def _region(region: Region, map: SemanticMap) -> RegionSeen:
 
 
 def _room(room: Room) -> RoomSeen:
-    return RoomSeen(
-        id=room.id, description=room.description, door_m=room.door_m.centre_m, viewpoint_m=room.viewpoint_m
-    )
+    return RoomSeen(id=room.id, description=room.description, door_m=room.door_m.centre_m, viewpoint_m=room.viewpoint_m)

@@ -45,6 +45,6 @@ def _kind(where: str, options: SourceOptions) -> tuple[str, str]:
     if (path / "color").is_dir():
         return "folder", where
     raise MapError(
-        f"'{where}' is no source of pictures: give a folder with rgb.txt and depth.txt (TUM), one with color/ and depth/, "
-        "a ROS 2 bag, realsense:, sim:SCENARIO, or a single picture by --color FILE --depth FILE"
+        f"'{where}' is no source of pictures: give a folder with rgb.txt and depth.txt (TUM), one with color/ and "
+        "depth/, a ROS 2 bag, realsense:, sim:SCENARIO, or a single picture by --color FILE --depth FILE"
     )

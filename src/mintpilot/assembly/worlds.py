@@ -134,7 +134,9 @@ def _from_map(
 ) -> World:
     truths = truths_of(file)
     mission = mission_of(file, start_m=start, volume=map_.frame.box)
-    task = (task_of(file, layer_m=layer_m) if layer_m is not None else task_of(file)) or parse(mission.instruction, home_m=mission.start_m)
+    task = (task_of(file, layer_m=layer_m) if layer_m is not None else task_of(file)) or parse(
+        mission.instruction, home_m=mission.start_m
+    )
     wanted = wanted_of(map_, task, truths, start)
     scene = scene_of_map(
         map_,

@@ -107,6 +107,7 @@ def run(
     seed: Seed = None,
     llm: Llm = None,
     lang: Lang = None,
+    perception: str | None = None,
     out: Path | None = None,
     json: Json = False,
     debug: Flag = False,
@@ -122,6 +123,7 @@ def run(
         seed: Of everything that is drawn at random; overrides the one in the file.
         llm: Language model for words: template (none), endpoint, embedded, or a plug-in's. Default: as the file says.
         lang: Language of the questions: en, de, fr or es. Default: as the file says.
+        perception: Who makes objects of pictures: geometric, segments, or a plug-in's. Default: as the file says.
         out: Run folder; a new one under ./runs by default.
         json: Print the outcome, questions, gaps and figures as one JSON object, and nothing else, on standard output.
             The whole record is in the run folder.
@@ -138,6 +140,7 @@ def run(
         as_json=json,
         llm=llm,
         lang=lang,
+        perception=perception,
     )
     return guarded(lambda: fly(mission, options), as_json=json, debug=debug)
 

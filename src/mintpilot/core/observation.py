@@ -74,7 +74,7 @@ class RawFrame:
     camera: CameraModel
     """The lens."""
     source_from_camera: Floats | None = None
-    """Pose of the optical frame in the source's own world, homogeneous (4, 4), not checked; None where it is not known."""
+    """Pose of the optical frame in the source's own world, homogeneous (4, 4), not checked; None: not known."""
 
     def __post_init__(self) -> None:
         for array in (self.rgb, self.depth_m, self.source_from_camera):

@@ -12,7 +12,7 @@ import numpy as np
 
 from mintpilot.core.geometry import Floats
 from mintpilot.core.observation import Frame, RawFrame
-from mintpilot.core.ports import FrameSource, SourceOptions
+from mintpilot.core.ports import FrameSource
 from mintpilot.frames.checks import checked_pose, checked_track, checked_unit, seen_faults
 from mintpilot.frames.consistency import LEAST_OVERLAP, agreement, relative
 from mintpilot.frames.gravity import Level, floor_along, level_of, patches_of

@@ -62,13 +62,15 @@ def checked_pose(pose: Floats, number: int) -> Floats:
     scale = float(np.cbrt(np.linalg.det(rotation)))
     if scale < 0:
         raise MapError(
-            f"pose of frame {number} is mirrored (determinant {scale**3:.2f}): an axis points the wrong way; poses must "
-            "be of a right-handed frame"
+            f"pose of frame {number} is mirrored (determinant {scale**3:.2f}): an axis points the wrong way; poses "
+            "must be of a right-handed frame"
         )
     if np.abs(rotation @ rotation.T - max(scale, 1e-9) ** 2 * np.eye(3)).max() > RIGID * max(1.0, scale**2):
         raise MapError(f"pose of frame {number}: its upper left 3 x 3 is no rotation; mend the poses")
     if abs(scale - 1) > RIGID:
-        raise MapError(f"poses are scaled: the rotation of frame {number} stretches by {scale:.4g}, it must keep lengths")
+        raise MapError(
+            f"poses are scaled: the rotation of frame {number} stretches by {scale:.4g}, it must keep lengths"
+        )
     left, _, right = np.linalg.svd(rotation)
     mended = pose.copy()
     mended[:3, :3] = left @ right
@@ -112,10 +114,12 @@ def seen_faults(frames: Sequence[RawFrame]) -> tuple[str, ...]:
     holes = [1 - float((f.depth_m > 0).mean()) for f in frames]
     if min(holes) > 0.999:
         said.append(
-            "No frame has any depth: is the depth file empty, of another encoding, or everything out of the camera's range?"
+            "No frame has any depth: is the file empty, of another encoding, or everything out of the camera's range?"
         )
     elif float(np.median(holes)) > 0.6:
-        said.append(f"{np.median(holes):.0%} of the depth is missing: glass, sunlight, black or too near things do that.")
+        said.append(
+            f"{np.median(holes):.0%} of the depth is missing: glass, sunlight, black or too near things do that."
+        )
     brightness = [float(np.median(f.rgb)) for f in frames]
     if max(brightness) < _DARK:
         said.append("The pictures are black: colours mean nothing; was the light off or the lens covered?")

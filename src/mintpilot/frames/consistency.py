@@ -74,8 +74,7 @@ SCALES = (0.001, 0.01, 0.1, 0.2, 0.5, 2.0, 5.0, 10.0, 100.0, 1000.0)
 
 def relative(first: Floats, second: Floats) -> Floats:
     """The first camera in the second one's frame, of two poses (4, 4) in one world."""
-    moved: Floats = np.linalg.solve(second, first)
-    return moved
+    return np.asarray(np.linalg.solve(second, first), np.float64)
 
 
 def mistakes(frames: Sequence[RawFrame]) -> Mapping[str, float]:
@@ -93,8 +92,8 @@ def mistakes(frames: Sequence[RawFrame]) -> Mapping[str, float]:
         given = relative(first, second)
         tries = {
             "as given": given,
-            "inverted": relative(np.linalg.inv(first), np.linalg.inv(second)),
-            "body": relative(first @ BODY_FROM_OPTICAL, second @ BODY_FROM_OPTICAL),
+            "inverted": np.asarray(second @ np.linalg.inv(first), np.float64),
+            "body": relative(_optical(first), _optical(second)),
         }
         for name, pose in tries.items():
             scores.setdefault(name, []).append(agreement(a, b, pose).score)
@@ -108,3 +107,8 @@ def _telling_pairs(frames: Sequence[RawFrame]) -> list[tuple[RawFrame, RawFrame]
     posed = [f for f in frames if f.source_from_camera is not None]
     pairs = [(posed[i], posed[i + gap]) for gap in (1, 2, 4) for i in range(0, len(posed) - gap, max(1, gap))]
     return pairs[:: max(1, len(pairs) // 6)][:6] if len(pairs) > 6 else pairs
+
+
+def _optical(body: Floats) -> Floats:
+    """The optical frame of a camera that looks ahead from a body at that pose."""
+    return np.asarray(body @ BODY_FROM_OPTICAL, np.float64)

@@ -99,7 +99,7 @@ class TumFolder(FrameSource):
             views.append(_View(time_s=time_s, color=color, depth=depth, pose=_nearest(poses, time_s)))
         if not views:
             raise MapError(
-                f"'{self._root}': no colour picture has depth within {SAME_S} s; do rgb.txt and depth.txt use one clock?"
+                f"'{self._root}': no colour picture has depth within {SAME_S} s; do both lists use one clock?"
             )
         lonely = len(colors) - len(views)
         if lonely:

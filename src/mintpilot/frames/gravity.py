@@ -21,6 +21,8 @@ STEEPEST_RAD = math.radians(75.0)
 """A camera looks up or down by no more than this, and is not turned about its axis by more."""
 LEAST_SHARE = 0.03
 """A level surface has at least this share of all flat patches."""
+SPREAD_M = 0.1
+"""A layer is spread by at least this much, standard deviation, in both directions, to tell what is level."""
 FLOOR_M = 0.06
 """Patches no further apart in height than this are one surface."""
 
@@ -87,6 +89,8 @@ def level_of(patches: Patches) -> Level | None:
     share = float(near.mean())
     if share < LEAST_SHARE:
         return None
+    up = _levelled(patches.points_m[(normals @ up > math.cos(2 * LIKE_RAD)) & allowed], up)
+    near = normals @ up > math.cos(2 * LIKE_RAD)
     off = float(np.arccos(np.clip(normals[near] @ up, -1, 1)).mean())
     return Level(up=up, share=share, floor=floor_along(patches, up), spread_rad=off)
 
@@ -103,10 +107,32 @@ def floor_along(patches: Patches, up: Floats) -> float | None:
     first = int(np.argmax(counts >= least))
     if counts[first] < least:
         return None
-    # The fullest layer from there on, no higher than one layer above.
-    window = counts[first : np.searchsorted(heights, heights[first] + FLOOR_M, side="right")]
-    begin = first + int(np.argmax(window))
+    # From the first of the noise below it uphill to the fullest layer.
+    begin, fuller = -1, first
+    while fuller != begin:
+        begin = fuller
+        above = np.searchsorted(heights, heights[begin] + FLOOR_M, side="right")
+        fuller = begin + int(np.argmax(counts[begin:above]))
     return float(np.median(heights[begin : begin + counts[begin]]))
+
+
+def _levelled(points: Floats, up: Floats) -> Floats:
+    """Up once more, by the plane through the middles of the fullest layer: those err less than single normals."""
+    for band in (3 * FLOOR_M, 2 * FLOOR_M, FLOOR_M):
+        along = points @ up
+        order = np.sort(along)
+        counts = np.searchsorted(order, order + band, side="right") - np.arange(len(order))
+        low = order[int(np.argmax(counts))]
+        layer = points[(along >= low) & (along <= low + band)]
+        centred = layer - layer.mean(axis=0)
+        spreads, axes = np.linalg.eigh(centred.T @ centred / len(layer))
+        if len(layer) < 20 or spreads[1] < SPREAD_M**2:
+            return up
+        normal = axes[:, 0] * np.sign(axes[:, 0] @ up)
+        if float(normal @ up) < math.cos(2 * LIKE_RAD):
+            return up
+        up = normal
+    return up
 
 
 def _patches(frame: RawFrame) -> Patches:

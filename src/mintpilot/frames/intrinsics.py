@@ -57,9 +57,7 @@ def read_intrinsics(path: Path) -> CameraModel:
 _EXAMPLE = {"width": 640, "height": 480, "fx": 525.0, "fy": 525.0, "cx": 319.5, "cy": 239.5}
 
 
-def checked_camera(
-    *, width: int, height: int, fx: float, fy: float, cx: float, cy: float, name: str
-) -> CameraModel:
+def checked_camera(*, width: int, height: int, fx: float, fy: float, cx: float, cy: float, name: str) -> CameraModel:
     """The lens, if there can be one like it; ``cx`` and ``cy`` count from the picture's corner.
 
     Raises:
@@ -97,7 +95,9 @@ def _numbers(content: Mapping[str, object], path: Path) -> dict[str, float]:
     numbers: dict[str, float] = {}
     for key, value in found.items():
         if isinstance(value, bool) or not isinstance(value, int | float):
-            raise MapError(f"intrinsics '{path}': '{key}' is {value!r}, a number is wanted; write {json.dumps(_EXAMPLE)}")
+            raise MapError(
+                f"intrinsics '{path}': '{key}' is {value!r}, a number is wanted; write {json.dumps(_EXAMPLE)}"
+            )
         numbers[key] = float(value)
     return numbers
 

@@ -75,7 +75,7 @@ def as_depth(pixels: NDArray[Any], unit_m: float, name: str) -> NDArray[np.float
         depth = pixels.astype(np.float32)
     elif pixels.dtype.itemsize == 1:
         raise MapError(
-            f"{name}: 8 bits a pixel are a picture of depth, no depth; give the 16-bit original or floating point metres"
+            f"{name}: 8 bits a pixel are no depth; give the 16-bit original or floating point metres"
         )
     else:
         depth = (pixels.astype(np.float64) * unit_m).astype(np.float32)

@@ -9,9 +9,7 @@ import numpy as np
 from mintpilot.core.errors import MapError
 from mintpilot.core.geometry import Floats
 
-BODY_FROM_OPTICAL = np.array(
-    [[0.0, 0.0, 1.0, 0.0], [-1.0, 0.0, 0.0, 0.0], [0.0, -1.0, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0]]
-)
+BODY_FROM_OPTICAL = np.array([[0.0, 0.0, 1.0, 0.0], [-1.0, 0.0, 0.0, 0.0], [0.0, -1.0, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0]])
 """A camera that looks ahead: its optical frame (x right, y down, z ahead) in a body frame (x ahead, y left, z up)."""
 BODY_FROM_OPTICAL.setflags(write=False)
 
@@ -47,5 +45,4 @@ def turning(source: Floats, target: Floats) -> Floats:
         rotation: Floats = 2 * np.outer(axis, axis) - np.eye(3)
         return rotation
     cross = np.array([[0, -axis[2], axis[1]], [axis[2], 0, -axis[0]], [-axis[1], axis[0], 0]])
-    rotation = np.eye(3) + cross + cross @ cross / (1 + cosine)
-    return rotation
+    return np.asarray(np.eye(3) + cross + cross @ cross / (1 + cosine), float)

@@ -38,7 +38,9 @@ class Draft:
 def fused_objects(tracks: Sequence[Track], draft: Draft) -> tuple[MapObject, ...]:
     """Objects seen often or surely enough, doors left out; ids from the previous map by nearness."""
     settings = draft.settings
-    kept = [t for t in tracks if (t.label != "door" or t.is_segment) and _credible(t, settings) and not _roofed(t, draft)]
+    kept = [
+        t for t in tracks if (t.label != "door" or t.is_segment) and _credible(t, settings) and not _roofed(t, draft)
+    ]
     people = [t for t in kept if t.label == "person"]
     fires = [t for t in kept if t.label == "fire"]
     kept = [t for t in kept if not any(_limb_of(t, p) for p in people) and not any(_foot_of(t, f) for f in fires)]
@@ -95,7 +97,9 @@ def fused_regions(clouds: Sequence[Cloud], draft: Draft, prior_passable: float) 
 def fused_rooms(tracks: Sequence[Track], draft: Draft, prior_occupied: float) -> tuple[Room, ...]:
     """One room per closed door, with the answer and the search of the previous map; rooms of old stay."""
     least, sure = draft.settings.door_sightings, draft.settings.sure_door
-    doors = [t for t in tracks if t.label == "door" and not t.is_segment and (len(t.frames) >= least or t.surest >= sure)]
+    doors = [
+        t for t in tracks if t.label == "door" and not t.is_segment and (len(t.frames) >= least or t.surest >= sure)
+    ]
     old = draft.previous.rooms if draft.previous is not None else ()
     for room in old:
         draft.names.seen(room.id)
@@ -144,7 +148,12 @@ def _credible(track: Track, settings: MappingSettings) -> bool:
 
 def _limb_of(track: Track, person: Track) -> bool:
     """True for a low scrap beside somebody lying: an arm or a leg that was seen apart from the rest."""
-    if track.is_segment or track.label == "person" or track.box_m.hi_m[2] > 0.4 or len(track.frames) > len(person.frames):
+    if (
+        track.is_segment
+        or track.label == "person"
+        or track.box_m.hi_m[2] > 0.4
+        or len(track.frames) > len(person.frames)
+    ):
         return False
     a, b = track.box_m.centre_m, person.box_m.centre_m
     return float(np.hypot(a[0] - b[0], a[1] - b[1])) < 1.1

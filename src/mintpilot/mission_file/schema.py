@@ -108,8 +108,8 @@ class PerceptionSpec(Spec):
     """What makes objects of pictures."""
 
     use: Name = "geometric"
-    """Perception by name: `geometric` (boxes, people lying, doors, smoke, fire), `segments` (bodies of any kind, anywhere),
-    or that of a plug-in; `--perception` overrides it."""
+    """Perception by name: `geometric` (boxes, people lying, doors, smoke, fire), `segments` (bodies of any kind,
+    anywhere), or that of a plug-in; `--perception` overrides it."""
 
 
 class GoalSpec(Spec):

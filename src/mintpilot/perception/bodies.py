@@ -80,9 +80,9 @@ def bodies_of(view: View, floor_m: float) -> Scene:
     sizes = np.bincount(labels.ravel(), minlength=count + 1)
     sizes[0] = 0
     numbers = np.flatnonzero(sizes >= least)
-    numbered = np.zeros(count + 1, np.int32)
+    numbered = np.zeros(count + 1, np.int64)
     numbered[numbers] = np.arange(1, len(numbers) + 1)
-    marks = np.ascontiguousarray(numbered[labels], np.int32)
+    marks = np.ascontiguousarray(numbered[labels], np.int64)
     patches = measured(view, surfaces, marks, len(numbers))
     kinds = [_kind(p, floor_m) for p in patches]
     _take_coplanar(view, surfaces, marks, patches, kinds)

@@ -71,7 +71,9 @@ def groups_of(
     return [_root(groups, i) for i in range(len(groups))]
 
 
-def settled(groups: Sequence[int], patches: Sequence[Patch], is_thing: Sequence[bool], supports: Sequence[Patch]) -> list[int]:
+def settled(
+    groups: Sequence[int], patches: Sequence[Patch], is_thing: Sequence[bool], supports: Sequence[Patch]
+) -> list[int]:
     """The groups with those that float in the air joined to the body whose extent they share most of.
 
     The back of a chair is seen above its seat, which hides where the two meet.

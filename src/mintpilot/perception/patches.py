@@ -15,6 +15,8 @@ LEAST_FACE = 0.08
 """A face of a patch has at least this share of its pixels."""
 HOLLOW_TURN = -0.3
 """Change of the horizontal part of the normal along a patch that curves inwards, less than this."""
+SAMPLE = 3000
+"""About so many points of a patch give its extent and its plane."""
 _AZIMUTHS = 36
 
 
@@ -76,6 +78,7 @@ def _measured(number: int, own: Floats, facing: Floats, depth: Floats, eye: Floa
     up = np.where(known, facing[:, 2], 0.5)
     normal, offset, flat = plane_of(own)
     sign = 1.0 if normal @ (eye - own.mean(axis=0)) >= 0 else -1.0
+    spread = own[:: max(1, len(own) // SAMPLE)]
     level, upright = up > LEVEL_COSINE, np.abs(up) < UPRIGHT_COSINE
     side, side_m = _side(own[upright], facing[upright], len(own))
     return Patch(
@@ -87,8 +90,8 @@ def _measured(number: int, own: Floats, facing: Floats, depth: Floats, eye: Floa
         normal=sign * normal,
         offset_m=sign * offset,
         flatness_m=flat,
-        lo_m=np.percentile(own, 1, axis=0),
-        hi_m=np.percentile(own, 99, axis=0),
+        lo_m=np.percentile(spread, 1, axis=0),
+        hi_m=np.percentile(spread, 99, axis=0),
         sigma_m=float(NOISE_SHARE * np.median(depth) ** 2),
         top_m=float(np.median(own[level, 2])) if level.mean() > LEAST_FACE else None,
         side=side,
@@ -110,7 +113,7 @@ def _is_hollow(points: Floats, facing: Floats) -> bool:
 
 def plane_of(points: Floats) -> tuple[Floats, float, float]:
     """Normal, position along it and standard deviation of the plane through most of some points (n, 3)."""
-    sample = points[:: max(1, len(points) // 3000)]
+    sample = points[:: max(1, len(points) // SAMPLE)]
     near = np.ones(len(sample), bool)
     for _ in range(3):  # least squares, then twice more without the strays
         middle = sample[near].mean(axis=0)

@@ -33,7 +33,7 @@ SHOULDERS = 1.15
 HEADLESS = 0.2
 """Probability of what has a body's size and curves, but no head in view."""
 REACHES_M = 0.5
-"""Somebody upright is seen down to this height above what they are on, unless the picture ends or something hides it."""
+"""Somebody upright is seen down to this height above what they are on, unless the picture ends before."""
 
 
 def with_people(segments: Sequence[Segment], least: float = 0.3) -> list[Segment]:
@@ -121,7 +121,9 @@ def _may_be_limb(segment: Segment) -> bool:
 
 
 def _apart(a: Box, b: Box) -> float:
-    gaps = [max(0.0, low - high) for low, high in (*zip(a.lo_m, b.hi_m, strict=True), *zip(b.lo_m, a.hi_m, strict=True))]
+    gaps = [
+        max(0.0, low - high) for low, high in (*zip(a.lo_m, b.hi_m, strict=True), *zip(b.lo_m, a.hi_m, strict=True))
+    ]
     return float(np.linalg.norm(gaps))
 
 

@@ -6,13 +6,14 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from mintpilot.core.geometry import Box, Floats
+from mintpilot.core.geometry import Bools, Box, Floats
 from mintpilot.core.observation import OBJECT, Attribute, Detection, Frame, NameGuess, Segment
 from mintpilot.core.ports import Namer, Perception
 from mintpilot.perception.bodies import Body, BodyKind, Scene, bodies_of
 from mintpilot.perception.boxes import box_around, pixel_box, touches_border
-from mintpilot.perception.colours import colour_word, size_word
+from mintpilot.perception.colours import colour_words, size_word
 from mintpilot.perception.geometry_namer import GeometryNamer, fused
+from mintpilot.perception.hazards import find_hazards
 from mintpilot.perception.holding import height_below
 from mintpilot.perception.leaves import find_leaves
 from mintpilot.perception.patches import Patch
@@ -26,6 +27,10 @@ NAMED = 0.5
 """A thing has the name that is at least so likely; others are an `object`."""
 SMALLEST_M = 0.025
 """Smaller things are noise."""
+HAZY = 0.3
+"""A body of which more than this share is smoke or flames is a scrap of them."""
+TINTED = 0.3
+"""A colour that so much of a thing has is its colour, whatever is white, grey or black besides: print and gloss are."""
 SETTLES_M = 0.06
 """A thing whose foot is hidden, no higher than this above what is below it, stands on that."""
 
@@ -50,14 +55,16 @@ class SegmentPerception(Perception):
         if not view.valid.any():
             return ()
         scene = bodies_of(view, self._settings.floor_m)
-        parts = [segment_of(view, scene, body, self._settings) for body in scene.things]
+        hazards, covered = find_hazards(view, scene, index, self._settings)
+        bodies = [body for body in scene.things if float(covered[body.mask].mean()) < HAZY]
+        parts = [segment_of(view, scene, body, self._settings) for body in bodies]
         segments = with_people([part for part in parts if part is not None])
         claims = [namer.names(frame, segments) for namer in self._namers]
         found = []
         for number, segment in enumerate(segments):
             names = fused([claim[number] for claim in claims])
             found.append(_detection(view, segment, names, index, self._settings))
-        return (*found, *find_leaves(view, scene, index, self._settings))
+        return (*found, *hazards, *find_leaves(view, scene, index, self._settings))
 
 
 def segment_of(view: View, scene: Scene, body: Body, settings: PerceptionSettings) -> Segment | None:
@@ -65,7 +72,7 @@ def segment_of(view: View, scene: Scene, body: Body, settings: PerceptionSetting
     points = as_floats(scene.surfaces.points_m[body.mask])
     if len(points) < settings.least_pixels or float(np.median(view.depth_m[body.mask])) > settings.reach_m:
         return None
-    box = box_around(points, stray=1.0)
+    box = box_around(_thinned(points, 3000), stray=1.0)
     if max(box.size_m) < SMALLEST_M or box.hi_m[2] - settings.floor_m < SMALLEST_M:
         return None
     below, surface = height_below(np.asarray(box.lo_m), np.asarray(box.hi_m), _supports(scene), settings.floor_m)
@@ -91,7 +98,7 @@ def _at_hole(view: View, body: Body) -> bool:
     """Whether a body ends where the sensor's own picture ends, inside of the colour picture."""
     rows, columns = np.flatnonzero(view.valid.any(axis=1)), np.flatnonzero(view.valid.any(axis=0))
     left, top, right, bottom = pixel_box(body.mask)
-    return left <= columns[0] or top <= rows[0] or right > columns[-1] or bottom > rows[-1]
+    return bool(left <= columns[0] or top <= rows[0] or right > columns[-1] or bottom > rows[-1])
 
 
 def _detection(
@@ -122,14 +129,21 @@ def _score(view: View, segment: Segment) -> float:
 def _attributes(view: View, segment: Segment, settings: PerceptionSettings) -> tuple[Attribute, ...]:
     """Colour, size, height against a person's, and what it is on, in plain words."""
     mask = segment.mask
-    colour = colour_word(view.hue[mask], view.saturation[mask], view.value[mask])
-    words = [("colour", colour), ("size", size_word(max(segment.box_m.size_m)))]
+    words = [("colour", _colour(view, mask)), ("size", size_word(max(segment.box_m.size_m)))]
     height = segment.box_m.hi_m[2] - settings.floor_m
     if segment.on_floor:
         words += [("height", height_word(height)), ("place", "on the floor")]
     else:
         words.append(("place", "on the table" if segment.stands_on_m - settings.floor_m < 1.15 else "on the shelf"))
     return tuple(Attribute(name=name, value=value) for name, value in words)
+
+
+def _colour(view: View, mask: Bools) -> str:
+    words, counts = np.unique(colour_words(view.hue[mask], view.saturation[mask], view.value[mask]), return_counts=True)
+    tinted = ~np.isin(words, ("white", "grey", "black"))
+    if tinted.any() and counts[tinted].max() >= TINTED * counts.sum():
+        return str(words[tinted][int(np.argmax(counts[tinted]))])
+    return str(words[int(np.argmax(counts))])
 
 
 def height_word(height_m: float) -> str:
@@ -140,6 +154,6 @@ def height_word(height_m: float) -> str:
     return "as tall as a person" if height_m < 2.0 else "taller than a person"
 
 
-def _thinned(points: Floats) -> Floats:
-    thin: Floats = points[:: max(1, len(points) // 400)]
+def _thinned(points: Floats, about: int = 400) -> Floats:
+    thin: Floats = points[:: max(1, len(points) // about)]
     return thin

@@ -18,7 +18,7 @@ SQUARE = math.sin(math.radians(14.0))
 """Faces of a box are at right angles within this."""
 LEAST_ROUND = 0.35
 """This share of all of a cylinder's surface that is seen is its sides."""
-_SAMPLE = 1500
+_SAMPLE = 700
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -179,9 +179,9 @@ def _edges(
                 du = (1, 0, 1, -1)[way]
                 for sign in (-1, 1):
                     y, x = v + sign * dv, u + sign * du
-                    if 0 <= y < height and 0 <= x < width and raw[y, x] > 0:
-                        if raw[v, u] - raw[y, x] > jump[v, u]:
-                            edges[v, u] = True
+                    inside = 0 <= y < height and 0 <= x < width
+                    if inside and raw[y, x] > 0 and raw[v, u] - raw[y, x] > jump[v, u]:
+                        edges[v, u] = True
                 ahead = _reached(depth, jump, v, u, dv, du, reach)
                 behind = _reached(depth, jump, v, u, -dv, -du, reach)
                 if ahead < 2 or behind < 2:

@@ -56,7 +56,13 @@ def said_of(thing: MapObject) -> str:
     """A thing by what can be said of it: ``the red box on the table``, ``the knee-high grey thing on the floor``."""
     words = {a.name: a.value for a in thing.attributes}
     noun = "thing" if thing.label in (OBJECT, PERSON) and thing.names else thing.label
-    parts = ["the", words.get("height", "") if noun == "thing" else "", words.get("colour", ""), noun, words.get("place", "")]
+    parts = [
+        "the",
+        words.get("height", "") if noun == "thing" else "",
+        words.get("colour", ""),
+        noun,
+        words.get("place", ""),
+    ]
     return " ".join(part for part in parts if part)
 
 

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from mintpilot.core.geometry import Vec3
-from mintpilot.core.observation import Attribute
+from mintpilot.core.observation import Attribute, NameGuess
 from mintpilot.core.semantic_map import Room, SemanticMap
 
 ROOM = "room"
@@ -44,6 +44,8 @@ class Thing:
     """Where the drone goes for it: its centre, or for a room the viewpoint in front of its door."""
     description: str = ""
     """Given by the map, for rooms; empty: made from the attributes."""
+    names: tuple[NameGuess, ...] = ()
+    """What it may be, where that is not sure; what is missing to 1 is for none of them."""
     searched: bool = False
     """For rooms: already looked into."""
     behind_door: bool = False
@@ -83,6 +85,7 @@ def things_of(map: SemanticMap) -> tuple[Thing, ...]:
             position_m=o.position_m,
             size_m=o.box_m.size_m,
             goal_m=o.position_m,
+            names=o.names,
             behind_door=any(_is_inside(o.position_m, room) for room in map.rooms),
         )
         for o in map.objects
