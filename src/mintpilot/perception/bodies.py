@@ -22,6 +22,8 @@ LEAST_SHARE = 0.0004
 LEAST_PIXELS = 24
 SURFACE_M2, SURFACE_LEVEL = 0.2, 0.85
 """A level surface of this area, with so much of it level, is what things stand on."""
+BOARD_LEVEL, BOARD_M = 0.5, 0.12
+"""Of a board so thin less needs to be level: its front edge is seen too."""
 WALL_M2, WALL_UPRIGHT, WALL_TALL_M = 0.5, 0.85, 0.9
 """An upright flat surface of this area is a wall; one of half the area where it is also half of this high and wide."""
 FLOOR_M = 0.08
@@ -101,7 +103,8 @@ def _kind(patch: Patch, floor_m: float) -> BodyKind:
     flat = patch.flatness_m < FLAT_M + 0.6 * patch.sigma_m
     if patch.level > SURFACE_LEVEL and patch.lo_m[2] < floor_m + FLOOR_M + TILT * patch.distance_m:
         return BodyKind.FLOOR
-    if patch.level > SURFACE_LEVEL and patch.area_m2 > SURFACE_M2 and flat:
+    board = patch.level > BOARD_LEVEL and size[2] < BOARD_M
+    if (patch.level > SURFACE_LEVEL or board) and patch.level * patch.area_m2 > SURFACE_M2 and flat:
         return BodyKind.SURFACE
     wide = float(np.hypot(size[0], size[1]))
     tall = patch.area_m2 > WALL_M2 or (min(size[2], wide) > WALL_TALL_M / 2 and patch.area_m2 > WALL_M2 / 2)

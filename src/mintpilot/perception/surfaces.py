@@ -19,6 +19,8 @@ SMOOTH = 3
 """Half a window over which depth is smoothed at a width of 640, pixels."""
 REACH = 5
 """How far apart, to either side of a pixel, surfaces are compared at a width of 640, pixels."""
+LEAST_REACH = 3
+"""… and at least, in small pictures."""
 STEEPEST = 5.0
 """Slope of a surface against the line of sight up to which neighbouring depths are one surface."""
 NOISE_SHARE = 0.0014
@@ -53,7 +55,7 @@ def surfaces_of(view: View) -> Surfaces:
     """Measures the surfaces in a view."""
     lens = view.frame.camera
     scale = max(0.5, lens.width / 640)
-    reach, half = max(2, round(REACH * scale)), max(1, round(SMOOTH * scale))
+    reach, half = max(LEAST_REACH, round(REACH * scale)), max(1, round(SMOOTH * scale))
     depth = np.ascontiguousarray(view.depth_m, np.float32)
     sigma = np.maximum(view.sigma_m, NOISE_SHARE * depth * depth)
     jump = (STEEPEST * depth / np.float32(lens.fx) + JUMP_SIGMAS * sigma).astype(np.float32)
@@ -184,7 +186,7 @@ def _edges(
                         edges[v, u] = True
                 ahead = _reached(depth, jump, v, u, dv, du, reach)
                 behind = _reached(depth, jump, v, u, -dv, -du, reach)
-                if ahead < 2 or behind < 2:
+                if ahead < 1 or behind < 1 or ahead + behind < 3:
                     continue
                 y, x = v + ahead * dv, u + ahead * du
                 q, p = v - behind * dv, u - behind * du
