@@ -23,6 +23,7 @@ COMMANDS = (
     "demo",
     "run",
     "plan",
+    "see",
     "check",
     "doctor",
     "bench table1",
@@ -46,7 +47,8 @@ finds every mistake in it, and `docs/mission.schema.json` lets an editor help yo
 Lengths are metres, times seconds, angles radians; x is east, y north, z up. Words are read as YAML 1.2 has it: `true`
 and `false` are truth values, `yes` and `no` are words. Anchors, aliases and tags are not read.
 
-Three kinds of worlds: a `scenario` by name, an explicit `scene`, or a `map` of your own. A ROS map keeps its free,
+Four kinds of worlds: a `scenario` by name, an explicit `scene`, a `map` of your own, or what `mintpilot see` made of
+pictures (`seen`). A ROS map keeps its free,
 occupied and unknown cells; only free ones are flown through, and the shade 205, which map_saver writes for unknown, is
 never free. The coordinates of a MovingAI map are those of its scenario files, times the resolution.
 """
@@ -54,6 +56,7 @@ TITLES = {
     "ScenarioWorld": "world by scenario",
     "SceneWorld": "world by scene",
     "MapWorld": "world by map",
+    "SeenWorld": "world by what was seen",
     "SceneSpec": "scene",
     "SolidSpec": "solid",
     "SmokeSpec": "smoke",
@@ -68,6 +71,7 @@ TITLES = {
     "AskingSpec": "asking",
     "LanguageSpec": "language",
     "SurveySpec": "survey",
+    "PerceptionSpec": "perception",
     "PriorsSpec": "priors",
     "CorrelationSpec": "correlation",
     "CombinationSpec": "combination",

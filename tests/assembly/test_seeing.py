@@ -8,10 +8,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from frames.recordings import BLOCKS, poses, save_folder, views
-from perception.scenes import Block
-from perception.real_things import DESK, LIVING_ROOM, REPORTED, RGBD, TABLETOP, place
 
+from frames.recordings import BLOCKS, poses, save_folder, views
 from mintpilot import plan_mission
 from mintpilot.assembly.seeing import see
 from mintpilot.assembly.sources import open_source
@@ -20,7 +18,8 @@ from mintpilot.core.ports import SourceOptions
 from mintpilot.frames.aligned import AlignedFrames
 from mintpilot.mission_file.reader import find_problems
 from mintpilot.mission_file.seen_map import load_map
-
+from perception.real_things import DESK, LIVING_ROOM, REPORTED, RGBD, TABLETOP, place
+from perception.scenes import Block
 
 BEHIND = Block(lo_m=(-3.0, 0.0, 0.0), hi_m=(-2.5, 0.5, 0.5), colour=(0.5, 0.5, 0.5))
 

@@ -6,8 +6,9 @@ import json
 from pathlib import Path
 
 import numpy as np
-from perception.scenes import CAMERA, Block, picture, pose
 from PIL import Image
+
+from perception.scenes import CAMERA, Block, picture, pose
 
 BLOCKS = [
     Block(lo_m=(2.4, -0.9, 0.0), hi_m=(2.9, -0.4, 0.5), colour=(0.8, 0.06, 0.06)),

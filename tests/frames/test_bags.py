@@ -6,8 +6,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from frames.recordings import EYES, intrinsics, poses, quaternion, views
 
+from frames.recordings import EYES, intrinsics, poses, quaternion, views
 from mintpilot.assembly.sources import open_source
 from mintpilot.core.errors import MapError
 from mintpilot.core.ports import SourceOptions
@@ -75,9 +75,7 @@ def write_bag(where: Path, *, mcap: bool, poses_by: str = "tf", depth: bool = Tr
                 write("/tf", "tf2_msgs/msg/TFMessage", message, t)
             lens, info = intrinsics(), make["sensor_msgs/msg/CameraInfo"]
             k = np.array([lens["fx"], 0, lens["cx"], 0, lens["fy"], lens["cy"], 0, 0, 1.0])
-            roi = make["sensor_msgs/msg/RegionOfInterest"](
-                x_offset=0, y_offset=0, height=0, width=0, do_rectify=False
-            )
+            roi = make["sensor_msgs/msg/RegionOfInterest"](x_offset=0, y_offset=0, height=0, width=0, do_rectify=False)
             message = info(
                 header=header(t, "camera_optical"),
                 height=frame.camera.height,
@@ -150,10 +148,12 @@ def test_a_bag_that_is_cut_short_is_read_to_the_cut_or_refused(tmp_path: Path, m
     bag = write_bag(tmp_path / "bag", mcap=mcap)
     (file,) = bag.glob("*.mcap" if mcap else "*.db3")
     file.write_bytes(file.read_bytes()[: file.stat().st_size * 6 // 10])
+    said = ""
+    frames: list = []
     try:
         frames, source = read(bag)
+        said = " ".join(source.warnings)
     except MapError as error:
-        assert "cut short" in str(error)
-    else:
-        assert 0 < len(frames) < len(EYES)
-        assert any("cut short" in text for text in source.warnings)
+        said = str(error)
+    assert len(frames) < len(EYES)
+    assert "cut short" in said

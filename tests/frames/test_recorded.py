@@ -9,9 +9,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from frames.recordings import EYES, intrinsics, poses, save_folder, save_picture, save_tum, views
 from PIL import Image
 
+from frames.recordings import EYES, intrinsics, poses, save_folder, save_picture, save_tum, views
 from mintpilot.assembly.sources import open_source
 from mintpilot.core.errors import MapError
 from mintpilot.core.ports import SourceOptions

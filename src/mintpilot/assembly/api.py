@@ -139,9 +139,7 @@ def run_mission(
         MissingPartError: MuJoCo is chosen, or a language model, but not installed.
     """
     file, folder = _opened(mission, base)
-    choices = Choices(
-        strategy=strategy, vehicle=_vehicle(vehicle), perception=perception or file.perception.use
-    )
+    choices = Choices(strategy=strategy, vehicle=_vehicle(vehicle), perception=perception or file.perception.use)
     with talk_for(file.language, llm=llm, lang=lang) as talk:
         world = build_world(file, base=folder, seed=seed, parse=talk.parse)
         person = _operator(operator, world, file, talk)

@@ -86,7 +86,7 @@ def see(
 
 
 def gaps_of(map_: SemanticMap, instruction: str | None, *, start_m: Vec3) -> tuple[list[GapSeen], list[str]]:
-    """What may be a person, and with an instruction what is not known that bears on it; and what it speaks of in vain."""
+    """What may be a person, what is not known that bears on an instruction, and what it speaks of in vain."""
     gaps = [gap_seen(gap, question=f"Is that a person: {gap.description}?") for gap in doubtful_people(map_.objects)]
     if instruction is None:
         return gaps, []

@@ -74,9 +74,7 @@ def as_depth(pixels: NDArray[Any], unit_m: float, name: str) -> NDArray[np.float
     if np.issubdtype(pixels.dtype, np.floating):
         depth = pixels.astype(np.float32)
     elif pixels.dtype.itemsize == 1:
-        raise MapError(
-            f"{name}: 8 bits a pixel are no depth; give the 16-bit original or floating point metres"
-        )
+        raise MapError(f"{name}: 8 bits a pixel are no depth; give the 16-bit original or floating point metres")
     else:
         depth = (pixels.astype(np.float64) * unit_m).astype(np.float32)
     return np.where(np.isfinite(depth) & (depth > 0), depth, np.float32(0)).astype(np.float32)
