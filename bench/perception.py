@@ -17,7 +17,7 @@ import numpy as np
 from PIL import Image
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "perception"))
-from real_things import DESK, LIVING_ROOM, REPORTED, RGBD, TABLETOP, TUNED, place
+from real_things import DESK, REPORTED, RGBD, TABLETOP, TUNED, place, room_places
 
 from mintpilot.assembly.seeing import see
 from mintpilot.assembly.sources import open_source
@@ -71,9 +71,8 @@ def living_room() -> dict[str, object]:
     """The recording with poses."""
     source = open_source(str(RGBD), SourceOptions())
     report = see(source, name="rgbd", instruction=None)
-    track = (RGBD / "trajectory.log").read_text().split("\n")[1:5]
-    pose = np.array(report.world_from_source) @ np.array([[float(x) for x in row.split()] for row in track])
-    places = {t.name: place(t, RGBD / "depth" / "00000.png", 1000.0, pose) for t in LIVING_ROOM}
+    matrix = np.array(report.world_from_source)
+    places = {name: matrix[:3, :3] @ p + matrix[:3, 3] for name, p in room_places().items()}
     return {**_found(report, places), "back_projection_m": round(_back_projection(), 4)}
 
 
