@@ -107,6 +107,12 @@ def test_depth_in_another_unit_is_refused(tmp_path: Path) -> None:
         aligned(tmp_path, depth_unit_m=1e-6)
 
 
+def test_a_unit_that_may_be_wrong_is_said(tmp_path: Path) -> None:
+    color, depth = save_picture(tmp_path, "a", views()[0])
+    assert any("depth unit" in text for text in aligned("", color=color, depth=depth, depth_unit_m=0.0028).warnings)
+    assert not any("depth unit" in text for text in aligned("", color=color, depth=depth).warnings)
+
+
 def test_a_lens_that_cannot_be_is_refused(tmp_path: Path) -> None:
     save_folder(tmp_path, views(), poses())
     lens = json.loads((tmp_path / "camera_intrinsics.json").read_text())

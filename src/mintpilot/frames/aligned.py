@@ -24,6 +24,8 @@ ON_AXIS_RAD = math.radians(3.0)
 """Up that is so near to an axis of the source's world is that axis."""
 LEVEL_RAD = math.radians(10.0)
 """A source whose z is up may deviate by no more from what depth says."""
+HELD_M = 4.0
+"""A picture without a pose from higher up is worth a doubt about its depth unit."""
 FITS = 0.3
 """Frames of which less fits the one before have jumped."""
 _OUT_OF_ORDER = "out of order"
@@ -126,6 +128,11 @@ class AlignedFrames:
         matrix[:3, :3] = turning(up, np.array([0.0, 0.0, 1.0]))
         if not posed:
             matrix[:3, :3] = _facing_x(matrix[:3, :3])
+            if floor is not None and -floor > HELD_M:
+                self._said.append(
+                    f"The camera would be {-floor:.1f} m above the lowest surface; if it was not, the depth unit is wrong "
+                    "(TUM: --depth-unit 0.0002)."
+                )
         matrix[2, 3] = -(floor if floor is not None else 0.0)
         if posed and math.acos(float(np.clip(up[2], -1, 1))) > ON_AXIS_RAD:
             self._said.append(
