@@ -130,8 +130,8 @@ class AlignedFrames:
             matrix[:3, :3] = _facing_x(matrix[:3, :3])
             if floor is not None and -floor > HELD_M:
                 self._said.append(
-                    f"The camera would be {-floor:.1f} m above the lowest surface; if it was not, the depth unit is wrong "
-                    "(TUM: --depth-unit 0.0002)."
+                    f"The camera would be {-floor:.1f} m above the lowest surface; if it was not, the depth unit is "
+                    "wrong (TUM: --depth-unit 0.0002)."
                 )
         matrix[2, 3] = -(floor if floor is not None else 0.0)
         if posed and math.acos(float(np.clip(up[2], -1, 1))) > ON_AXIS_RAD:
