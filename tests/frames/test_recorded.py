@@ -109,7 +109,7 @@ def test_depth_in_another_unit_is_refused(tmp_path: Path) -> None:
 
 def test_a_unit_that_may_be_wrong_is_said(tmp_path: Path) -> None:
     color, depth = save_picture(tmp_path, "a", views([(0.0, 0.0, 3.2)])[0])
-    assert any("depth unit" in text for text in aligned("", color=color, depth=depth, depth_unit_m=0.0014).warnings)
+    assert any("depth unit" in text for text in aligned("", color=color, depth=depth, depth_unit_m=0.0018).warnings)
     assert not any("depth unit" in text for text in aligned("", color=color, depth=depth).warnings)
 
 
