@@ -23,6 +23,7 @@ COMMANDS = (
     "demo",
     "run",
     "plan",
+    "see",
     "check",
     "doctor",
     "understand instruction",
@@ -48,8 +49,8 @@ finds every mistake in it, and `docs/mission.schema.json` lets an editor help yo
 Lengths are metres, times seconds, angles radians; x is east, y north, z up. Words are read as YAML 1.2 has it: `true`
 and `false` are truth values, `yes` and `no` are words. Anchors, aliases and tags are not read.
 
-Three kinds of worlds: a `scenario` by name, an explicit `scene`, or a `map` of your own. Only cells that
-the map shows free are flown through. The coordinates of a MovingAI map are those of its scenario files, times the
+Four kinds of worlds: a `scenario` by name, an explicit `scene`, a `map` of your own, or what `mintpilot see` made of
+pictures (`seen`). Only cells that the map shows free are flown through. The coordinates of a MovingAI map are those of its scenario files, times the
 resolution. A pixel of a ROS map, by the first line that fits (its occupancy is 1 - shade, with `negate` the shade):
 
 1. not wholly opaque (alpha, transparent colour or palette entry), in every `mode`: unknown;
@@ -70,6 +71,7 @@ TITLES = {
     "ScenarioWorld": "world by scenario",
     "SceneWorld": "world by scene",
     "MapWorld": "world by map",
+    "SeenWorld": "world by what was seen",
     "SceneSpec": "scene",
     "KeepAwaySpec": "distance to be kept",
     "SolidSpec": "solid",
@@ -85,6 +87,7 @@ TITLES = {
     "AskingSpec": "asking",
     "LanguageSpec": "language",
     "SurveySpec": "survey",
+    "PerceptionSpec": "perception",
     "PriorsSpec": "priors",
     "CorrelationSpec": "correlation",
     "CombinationSpec": "combination",

@@ -1,8 +1,11 @@
+from pathlib import Path
+
 import pytest
 
 import mintpilot
 from mintpilot.assembly import registry
 from mintpilot.core.errors import MissingPartError, UnknownNameError
+from mintpilot.core.ports import SourceOptions
 
 
 def test_every_public_name_is_there_and_listed() -> None:
@@ -22,8 +25,9 @@ def test_an_unknown_public_name_says_what_there_is() -> None:
 def test_every_registered_part_can_be_made(port: str, name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("MINTPILOT_LLM_URL", "http://127.0.0.1:9/v1")
     monkeypatch.setenv("MINTPILOT_LLM_MODEL", "tiny")
+    pictures = ("medicine-boxes", SourceOptions(color=Path("a.png"), depth=Path("b.png"))) if port == "frames" else ()
     try:
-        made = registry.load(port, name)()
+        made = registry.load(port, name)(*pictures)
     except MissingPartError as error:
         pytest.skip(str(error))
     assert made is not None

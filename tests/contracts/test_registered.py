@@ -13,8 +13,10 @@ from tests.assembly.llm_server import LlmServer
 from mintpilot.assembly.registry import load, names
 from mintpilot.assembly.talk import Talk
 from mintpilot.conformance import (
+    check_frame_source,
     check_language_model,
     check_metric,
+    check_namer,
     check_objective,
     check_operator,
     check_perception,
@@ -25,7 +27,7 @@ from mintpilot.conformance import (
 )
 from mintpilot.conformance.sample import sample_world
 from mintpilot.core.errors import MissingPartError
-from mintpilot.core.ports import Completion
+from mintpilot.core.ports import Completion, SourceOptions
 from mintpilot.interaction.scripted import ScriptedOperator
 from mintpilot.interaction.terminal import TerminalOperator
 from mintpilot.language.doubles import FunctionModel, ReplayModel
@@ -59,6 +61,28 @@ def test_strategies(name):
 @pytest.mark.parametrize("name", names("perception"))
 def test_perceptions(name):
     check_perception(load("perception", name))
+
+
+@pytest.mark.parametrize("name", names("namer"))
+def test_namers(name):
+    if name == "ocr":
+        pytest.importorskip("rapidocr_onnxruntime", reason="needs rapidocr-onnxruntime")
+    check_namer(load("namer", name))
+
+
+def test_recordings_are_frame_sources(tmp_path):
+    from frames.recordings import poses, save_folder, save_tum, views
+
+    tum, folder = save_tum(tmp_path / "tum", views(), poses()), save_folder(tmp_path / "log", views(), poses())
+    color, depth = folder / "color" / "00000.png", folder / "depth" / "00000.png"
+    check_frame_source(lambda: load("frames", "tum")(str(tum), SourceOptions()))
+    check_frame_source(lambda: load("frames", "folder")(str(folder), SourceOptions()))
+    check_frame_source(lambda: load("frames", "picture")("", SourceOptions(color=color, depth=depth)))
+
+
+def test_the_simulator_is_a_frame_source():
+    pytest.importorskip("mujoco", reason="needs MuJoCo")
+    check_frame_source(lambda: load("frames", "sim")("medicine-boxes", SourceOptions(longest=3)))
 
 
 @pytest.mark.parametrize("make", [NullRecorder, MemoryRecorder, HistoryRecorder, lambda: TeeRecorder(MemoryRecorder())])

@@ -113,6 +113,7 @@ def run_mission(
     base: Path | None = None,
     llm: str | LanguageModel | None = None,
     lang: str | None = None,
+    perception: str | None = None,
 ) -> MissionRecord:
     """Flies a mission and keeps what happened.
 
@@ -130,6 +131,7 @@ def run_mission(
         llm: language model by its registered name, or one that was made already (it is closed in the end); default: as
             the file says, and that is none.
         lang: in which questions are asked; default: as the file says.
+        perception: registered name of what makes objects of pictures; default: as the file says.
 
     Returns:
         The record. How the mission ended is `MissionRecord.outcome`; an ending short of success is no exception.
@@ -144,6 +146,7 @@ def run_mission(
         strategy=strategy,
         strategy_arguments=_arguments(file, strategy, strategy_arguments),
         vehicle=_vehicle(vehicle),
+        perception=perception or file.perception.use,
     )
     with talk_for(file.language, llm=llm, lang=lang) as talk:
         world = build_world(file, base=folder, seed=seed, parse=talk.parse)

@@ -46,7 +46,28 @@ BUILT_IN: Final = MappingProxyType(
             }
         ),
         "planner": MappingProxyType({"grid": "mintpilot.planning.task_planner:GridPlanner"}),
-        "perception": MappingProxyType({"geometric": "mintpilot.perception.geometric:GeometricPerception"}),
+        "perception": MappingProxyType(
+            {
+                "geometric": "mintpilot.perception.geometric:GeometricPerception",
+                "segments": "mintpilot.perception.segments:SegmentPerception",
+            }
+        ),
+        "namer": MappingProxyType(
+            {
+                "geometry": "mintpilot.perception.geometry_namer:GeometryNamer",
+                "ocr": "mintpilot.perception.ocr_namer:OcrNamer",
+            }
+        ),
+        "frames": MappingProxyType(
+            {
+                "tum": "mintpilot.frames.folders:TumFolder",
+                "folder": "mintpilot.frames.folders:TrajectoryFolder",
+                "picture": "mintpilot.frames.single:SinglePicture",
+                "bag": "mintpilot.frames.bags:RosBag",
+                "realsense": "mintpilot.frames.realsense:RealSense",
+                "sim": "mintpilot.simulation.frame_source:SimulatedPictures",
+            }
+        ),
         "language": MappingProxyType(
             {
                 "template": "mintpilot.language.doubles:NoModel",
@@ -56,7 +77,8 @@ BUILT_IN: Final = MappingProxyType(
         ),
     }
 )
-"""Port → name → where it is. Every entry is called without arguments to make a part."""
+"""Port → name → where it is. Every entry is called without arguments to make a part; one of ``frames`` with the place
+of the pictures, and what is known of them (`mintpilot.core.ports.SourceOptions`)."""
 
 
 FORMER: Final = MappingProxyType({"strategy": MappingProxyType({"pure-llm": "passive-mixture"})})

@@ -36,6 +36,7 @@ def _mistakes(file: MissionFile, base: Path) -> Iterator[tuple[Place, str]]:
         *_tried(("asking", "objective"), lambda: load("objective", file.asking.objective)),
         *_tried(("asking", "impact_metric"), lambda: load("metric", file.asking.impact_metric)),
         *_strategy_mistakes(file),
+        *_tried(("perception", "use"), lambda: load("perception", file.perception.use)),
         *_tried(("language", "model"), lambda: load("language", file.language.model)),
     ]
     if file.goals is None:

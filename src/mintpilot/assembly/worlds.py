@@ -25,7 +25,8 @@ from mintpilot.mission_file.schema_base import attributes_of, place_of
 from mintpilot.mission_file.schema_core import asking_of, correlations_of, limits_of, mission_of, task_of, truths_of
 from mintpilot.mission_file.schema_map import load_bare_map, map_of
 from mintpilot.mission_file.schema_scene import ClosedRoomSpec, PersonSpec, SceneSpec
-from mintpilot.mission_file.schema_world import MapWorld, ScenarioWorld, SceneWorld
+from mintpilot.mission_file.schema_world import MapWorld, ScenarioWorld, SceneWorld, SeenWorld
+from mintpilot.mission_file.seen_map import load_map
 from mintpilot.simulation.map_scene import scene_of_map
 from mintpilot.simulation.scenarios import Scenario, make_scenario
 from mintpilot.simulation.scene import ClosedRoom, FlightRules, Person, Scene, Shape, Smoke, Solid
@@ -88,6 +89,9 @@ def build_world(file: MissionFile, *, base: Path, seed: int | None, parse: Parse
         return _from_scenario(file, world, drawn, parse)
     if isinstance(world, SceneWorld):
         return _from_scene(file, replace(scene_of(world.scene, file.name), seed=drawn), drawn, parse)
+    if isinstance(world, SeenWorld):
+        seen, begin = load_map(base / world.seen)
+        return _from_seen(file, seen, world.start_m or begin, drawn, parse)
     return _from_map(file, world, base, drawn, parse)
 
 
@@ -137,21 +141,36 @@ def _assembled(file: MissionFile, mission: Mission, scene: Scene, rules: FlightR
 
 
 def _from_map(file: MissionFile, world: MapWorld, base: Path, seed: int, parse: Parse) -> World:
+    """The world of a map of one's own."""
     bare = load_bare_map(world, base)
     start = place_of(world.start_m, world.height_m)
-    truths = truths_of(file)
-    mission = mission_of(file, start_m=start, volume=bare.frame.box)
-    said = task_of(file, layer_m=world.height_m)
-    task = said or parse(mission.instruction, home_m=mission.start_m, known=listed_words(world))
-    task = _with_wishes(task, file)
+    task = _task_on_map(file, parse, start, world.height_m)
+    limits = mission_of(file, start_m=start, volume=bare.frame.box).limits
     map_ = map_of(
         world,
         base,
         file.priors,
         bare=bare,
         goals_m=[goal.reference.position_m for goal in task.subgoals if goal.reference.position_m is not None],
-        clearance_m=mission.limits.clearance_m,
+        clearance_m=limits.clearance_m,
     )
+    return _on_map(file, map_, task, start, seed)
+
+
+def _from_seen(file: MissionFile, map_: SemanticMap, start: Vec3, seed: int, parse: Parse) -> World:
+    """The world of what was seen in pictures."""
+    return _on_map(file, map_, _task_on_map(file, parse, start, None), start, seed)
+
+
+def _task_on_map(file: MissionFile, parse: Parse, start: Vec3, layer_m: float | None) -> Task:
+    said = task_of(file) if layer_m is None else task_of(file, layer_m=layer_m)
+    read = said or parse(file.instruction, home_m=start, known=listed_words(file.world))
+    return _with_wishes(read, file)
+
+
+def _on_map(file: MissionFile, map_: SemanticMap, task: Task, start: Vec3, seed: int) -> World:
+    truths = truths_of(file)
+    mission = mission_of(file, start_m=start, volume=map_.frame.box)
     problems = find_gaps(map_, task, start_m=start).problems if task.needs_confirmation else ()
     if problems:
         raise InputError(f"'{mission.instruction}' was read by a language model: {' '.join(problems)}")
@@ -188,7 +207,7 @@ def _hull(limits: VehicleLimits, *, flat: bool) -> FlightRules:
     return FlightRules(radius_m=wide - ROUNDING_M, half_height_m=half_height_m)
 
 
-def listed_words(world: MapWorld | ScenarioWorld | SceneWorld) -> frozenset[str]:
+def listed_words(world: MapWorld | ScenarioWorld | SceneWorld | SeenWorld) -> frozenset[str]:
     """The words that a given map uses for things, as its file states them; none for other worlds."""
     if not isinstance(world, MapWorld):
         return frozenset()

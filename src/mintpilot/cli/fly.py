@@ -40,6 +40,8 @@ class FlightOptions:
     """Language model by name; None: as the mission file says."""
     lang: str | None = None
     """In which questions are asked; None: as the mission file says."""
+    perception: str | None = None
+    """What makes objects of pictures, by name; None: as the mission file says."""
 
 
 def fly(path: Path, options: FlightOptions) -> ExitCode:
@@ -74,6 +76,7 @@ def fly(path: Path, options: FlightOptions) -> ExitCode:
                 progress=tell,
                 llm=options.llm,
                 lang=options.lang,
+                perception=options.perception,
             )
         except KeyboardInterrupt:
             narrator.rest()

@@ -8,7 +8,7 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Annotated, Literal, TypeAlias
 
-from cyclopts import App, CycloptsError, Parameter
+from cyclopts import App, CycloptsError, Parameter, validators
 from rich.console import Console
 
 from mintpilot.cli.bench import bench
@@ -112,6 +112,7 @@ def run(
     seed: Seed = None,
     llm: Llm = None,
     lang: Lang = None,
+    perception: str | None = None,
     out: Path | None = None,
     json: Json = False,
     debug: Flag = False,
@@ -128,6 +129,7 @@ def run(
         seed: Of everything that is drawn at random; overrides the one in the file.
         llm: Language model for words: template (none), endpoint, embedded, or a plug-in's. Default: as the file says.
         lang: Language of the questions: en, de, fr or es. Default: as the file says.
+        perception: Who makes objects of pictures: geometric, segments, or a plug-in's. Default: as the file says.
         out: Run folder; a new one under ./runs by default.
         json: Print the outcome, questions, gaps and figures as one JSON object, and nothing else, on standard output.
             The whole record is in the run folder.
@@ -145,6 +147,7 @@ def run(
         as_json=json,
         llm=llm,
         lang=lang,
+        perception=perception,
     )
     return guarded(lambda: fly(mission, options), as_json=json, debug=debug)
 
@@ -193,6 +196,71 @@ def plan(
             lang=lang,
             as_json=json,
         ),
+        as_json=json,
+        debug=debug,
+    )
+
+
+@app.command(
+    help_epilogue=examples(
+        "mintpilot see recording/ --instruction 'bring me the can' --out seen",
+        "mintpilot see --color color.png --depth depth.png --intrinsics camera.json --depth-unit 0.001 --json",
+        "mintpilot see sim:medicine-boxes",
+    )
+)
+def see(
+    source: str = "",
+    /,
+    *,
+    instruction: str | None = None,
+    color: Path | None = None,
+    depth: Path | None = None,
+    intrinsics: Path | None = None,
+    depth_unit: float | None = None,
+    every: Annotated[int, Parameter(validator=validators.Number(gte=1))] = 1,
+    longest: Annotated[int, Parameter(validator=validators.Number(gte=1))] = 200,
+    perception: str = "segments",
+    seed: Seed = None,
+    out: Path | None = None,
+    json: Json = False,
+    debug: Flag = False,
+) -> ExitCode:
+    """Make map, objects and gaps of pictures that were taken elsewhere, without a flight.
+
+    Its folder is a world for plan and run: `world: {seen: DIR}` in a mission file.
+
+    Args:
+        source: A folder in TUM layout, or with color/, depth/ and trajectory.log; a ROS 2 bag; realsense:;
+            sim:SCENARIO. Not for a single picture.
+        instruction: What is to be done: what bears on it is listed as not known.
+        color: A single picture's colours; goes with --depth.
+        depth: A single picture's depth, 16 bit.
+        intrinsics: The lens, JSON or YAML. Default: the source's own, else a Kinect's.
+        depth_unit: Metres in one step of the depth. Default: 0.001, for TUM 0.0002.
+        every: Use each n-th frame only.
+        longest: Use no more frames than this.
+        perception: Who makes objects of pictures: segments, geometric, or a plug-in's.
+        seed: Of simulated sources. Default: 0.
+        out: Folder for map and report.
+        json: Print one JSON object, and nothing else, on standard output.
+        debug: Show the traceback of an error.
+    """
+    from mintpilot.cli.seeing import see_pictures
+    from mintpilot.core.ports import SourceOptions
+
+    if not source and color is None and depth is None:
+        return fail("see needs a source, or --color and --depth; see mintpilot see --help", as_json=json)
+    options = SourceOptions(
+        color=color,
+        depth=depth,
+        intrinsics=intrinsics,
+        depth_unit_m=depth_unit,
+        every=every,
+        longest=longest,
+        seed=seed or 0,
+    )
+    return guarded(
+        lambda: see_pictures(source, options, perception=perception, instruction=instruction, out=out, as_json=json),
         as_json=json,
         debug=debug,
     )

@@ -11,6 +11,7 @@ nothing, or raises `mintpilot.core.errors.ConformanceError`, which says what was
 
 from __future__ import annotations
 
+from mintpilot.conformance.frames import check_frame_source, check_namer
 from mintpilot.conformance.language_model import check_language_model
 from mintpilot.conformance.operator import check_operator
 from mintpilot.conformance.perception import check_perception
@@ -20,8 +21,10 @@ from mintpilot.conformance.strategy import check_objective, check_strategy
 from mintpilot.conformance.vehicle import check_vehicle
 
 __all__ = [
+    "check_frame_source",
     "check_language_model",
     "check_metric",
+    "check_namer",
     "check_objective",
     "check_operator",
     "check_perception",

@@ -61,6 +61,27 @@ class Frame:
             frozen(array)
 
 
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class RawFrame:
+    """One RGB-D picture as its source gives it, before its pose and its units were checked."""
+
+    time_s: float
+    """When it was taken, seconds on the source's clock."""
+    rgb: NDArray[np.uint8]
+    """Colours (height, width, 3)."""
+    depth_m: NDArray[np.float32]
+    """Distance along the optical axis (height, width), metres; 0 where the sensor got no return."""
+    camera: CameraModel
+    """The lens."""
+    source_from_camera: Floats | None = None
+    """Pose of the optical frame in the source's own world, homogeneous (4, 4), not checked; None: not known."""
+
+    def __post_init__(self) -> None:
+        for array in (self.rgb, self.depth_m, self.source_from_camera):
+            if array is not None:
+                frozen(array)
+
+
 class RegionKind(StrEnum):
     """Volumes whose passability a camera cannot settle, or that somebody declared uncertain."""
 
@@ -75,6 +96,40 @@ class Attribute:
 
     name: str
     value: str
+
+
+OBJECT = "object"
+"""Label of what nobody can name."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class NameGuess:
+    """A name that a thing may have."""
+
+    label: str
+    """Semantic class, e.g. ``can``."""
+    probability: float
+    """That the thing is one, 0 to 1."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Segment:
+    """One body in a picture, whatever it is: found by its geometry, not named yet."""
+
+    mask: NDArray[np.bool_]
+    """Its pixels (height, width)."""
+    points_m: Floats
+    """World points (n, 3) of its pixels, in the order of ``mask``."""
+    normals: Floats
+    """Unit vectors (n, 3) of its surface towards the camera; 0 where they cannot be told."""
+    box_m: Box
+    """Extent of what is seen of it, down to what it stands on."""
+    stands_on_m: float
+    """Height of what is below it."""
+    on_floor: bool
+    """Whether that is the floor, and not a table or a shelf."""
+    cut: bool
+    """Whether a part of it is outside of the picture."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -95,6 +150,9 @@ class Detection:
     """Some of its surface points (n, 3) in the world; for smoke, points inside the visible front."""
     frame_index: int = -1
     """Which frame it came from, for provenance."""
+    names: tuple[NameGuess, ...] = ()
+    """Names that a segment may have, likeliest first; what is missing to 1 is for none of them. Empty for detectors
+    that look for one class only: their ``label`` and ``score`` say all."""
 
     @property
     def position_m(self) -> Vec3:

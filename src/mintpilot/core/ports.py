@@ -5,8 +5,9 @@ All are synchronous; an adapter that needs a thread or an event loop hides it an
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Protocol, TypeAlias
 
 from mintpilot.core.events import Event
@@ -15,7 +16,7 @@ from mintpilot.core.geometry import Floats, Ints, SmallInts
 from mintpilot.core.inputs import MotionEnded, OperatorInput
 from mintpilot.core.mission import AskingSettings, Verdict
 from mintpilot.core.motion import Motion
-from mintpilot.core.observation import Detection, Frame
+from mintpilot.core.observation import Detection, Frame, NameGuess, RawFrame, Segment
 from mintpilot.core.plan import Plan, PlanningProblem
 from mintpilot.core.query import Evidence, Query, Question, Reply
 from mintpilot.core.reading import AnsweredBy, Reading
@@ -30,6 +31,64 @@ class Perception(Protocol):
         """What the frame shows; ``index`` goes into `Detection.frame_index`.
 
         Frames without any usable depth give no detections. Raises `DeviceError` when a model or its server fails.
+        """
+        ...
+
+
+class Namer(Protocol):
+    """Says what segments may be. Several are asked about the same segments, and their evidence is put together."""
+
+    def names(self, frame: Frame, segments: Sequence[Segment]) -> tuple[tuple[NameGuess, ...], ...]:
+        """For each segment the names that it may have, with calibrated probabilities that sum to at most 1.
+
+        What is missing to 1 is for none of them. A namer that knows nothing of a segment gives no name for it. Raises
+        `DeviceError` when a model or its server fails.
+        """
+        ...
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SourceOptions:
+    """What the command line or a caller knows about the pictures. None: found out, or assumed and said."""
+
+    color: Path | None = None
+    """Colour picture of a single view."""
+    depth: Path | None = None
+    """Depth picture of a single view."""
+    intrinsics: Path | None = None
+    """File with the lens, JSON or YAML."""
+    depth_unit_m: float | None = None
+    """Metres in one step of a depth picture of whole numbers: 0.001 for millimetres, 0.0002 for TUM's recordings."""
+    every: int = 1
+    """Each n-th frame is used."""
+    longest: int = 200
+    """No more frames than this are used."""
+    seed: int = 0
+    """For simulated sources."""
+
+
+class FrameSource(Protocol):
+    """Gives RGB-D pictures: a recording, a bag, a camera, a simulator."""
+
+    @property
+    def z_is_up(self) -> bool:
+        """Whether the source's own world has z up by convention (ROS, TUM); False where that is not known."""
+        ...
+
+    def frames(self) -> Iterator[RawFrame]:
+        """The pictures in the order in which they were taken. Called once.
+
+        Raises:
+            MapError: the recording, or a picture of it, cannot be used; the message says which and why.
+            DeviceError: a live camera is gone.
+            MissingPartError: the package that reads this kind of source is not installed.
+        """
+        ...
+
+    def remarks(self) -> tuple[str, ...]:
+        """What the person should know of how it was read (assumed lens, frames left out), a sentence each.
+
+        Complete once `frames` is exhausted.
         """
         ...
 
@@ -344,9 +403,11 @@ __all__ = [
     "Completion",
     "Decision",
     "Fly",
+    "FrameSource",
     "ImpactMetric",
     "Judge",
     "LanguageModel",
+    "Namer",
     "Operator",
     "Perception",
     "PlanSpace",
@@ -356,6 +417,7 @@ __all__ = [
     "QuerySituation",
     "Recorder",
     "Situation",
+    "SourceOptions",
     "Strategy",
     "TruthOracle",
     "Understand",

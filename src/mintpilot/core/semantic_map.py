@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from mintpilot.core.errors import MapError
 from mintpilot.core.geometry import Box, GridFrame, Ints, Vec3, frozen
-from mintpilot.core.observation import Attribute, RegionKind
+from mintpilot.core.observation import Attribute, NameGuess, RegionKind
 
 
 class Cell(IntEnum):
@@ -49,6 +49,8 @@ class MapObject:
     """Provenance: frame index and pixel box (left, top, right, bottom) of its largest view."""
     solid: bool = True
     """Whether it can be bumped into; False for marks and other things without matter. One without size never can."""
+    names: tuple[NameGuess, ...] = ()
+    """What it may be, likeliest first; what is missing to 1 is for none of them. Empty: it is what ``label`` says."""
 
     @property
     def position_m(self) -> Vec3:

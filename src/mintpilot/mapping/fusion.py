@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mintpilot.core.geometry import Box, GridFrame, Vec3
-from mintpilot.core.observation import RegionKind
+from mintpilot.core.observation import OBJECT, RegionKind
 from mintpilot.core.semantic_map import Cell, Knowledge, MapObject, Region, Room, SemanticMap
 from mintpilot.mapping.identity import Names, match
-from mintpilot.mapping.objects import Track, closeness
+from mintpilot.mapping.objects import Track, closeness, same_body
 from mintpilot.mapping.rooms import same_door, viewpoint_of
 from mintpilot.mapping.settings import MappingSettings
 from mintpilot.mapping.smoke import Cloud, cells_in
@@ -38,12 +38,14 @@ class FusionInput:
 def fused_objects(tracks: Sequence[Track], given: FusionInput) -> tuple[MapObject, ...]:
     """Objects seen often or surely enough, doors left out; ids from the previous map by nearness."""
     settings = given.settings
-    kept = [t for t in tracks if t.label != "door" and _credible(t, settings) and not _roofed(t, given)]
+    kept = [
+        t for t in tracks if (t.label != "door" or t.is_segment) and _credible(t, settings) and not _roofed(t, given)
+    ]
     people = [t for t in kept if t.label == "person"]
     fires = [t for t in kept if t.label == "fire"]
     kept = [t for t in kept if not any(_limb_of(t, p) for p in people) and not any(_foot_of(t, f) for f in fires)]
     old = given.previous.objects if given.previous is not None else ()
-    pairs = match([[closeness(t.box_m, o.box_m) if t.label == o.label else 0.0 for o in old] for t in kept])
+    pairs = match([[_nearness(t, o) for o in old] for t in kept])
     for thing in old:
         given.names.seen(thing.id)
     objects = [t.as_object(old[pairs[i]].id if i in pairs else given.names.new(t.label)) for i, t in enumerate(kept)]
@@ -95,7 +97,9 @@ def fused_regions(clouds: Sequence[Cloud], given: FusionInput, prior_passable: f
 def fused_rooms(tracks: Sequence[Track], given: FusionInput, prior_occupied: float) -> tuple[Room, ...]:
     """One room per closed door, with the answer and the search of the previous map; rooms of old stay."""
     least, sure = given.settings.door_sightings, given.settings.sure_door
-    doors = [t for t in tracks if t.label == "door" and (len(t.frames) >= least or t.surest >= sure)]
+    doors = [
+        t for t in tracks if t.label == "door" and not t.is_segment and (len(t.frames) >= least or t.surest >= sure)
+    ]
     old = given.previous.rooms if given.previous is not None else ()
     for room in old:
         given.names.seen(room.id)
@@ -144,7 +148,12 @@ def _credible(track: Track, settings: MappingSettings) -> bool:
 
 def _limb_of(track: Track, person: Track) -> bool:
     """True for a low scrap beside somebody lying: an arm or a leg that was seen apart from the rest."""
-    if track.label == "person" or track.box_m.hi_m[2] > 0.4 or len(track.frames) > len(person.frames):
+    if (
+        track.is_segment
+        or track.label == "person"
+        or track.box_m.hi_m[2] > 0.4
+        or len(track.frames) > len(person.frames)
+    ):
         return False
     a, b = track.box_m.centre_m, person.box_m.centre_m
     return float(np.hypot(a[0] - b[0], a[1] - b[1])) < 1.1
@@ -160,7 +169,7 @@ def _foot_of(track: Track, fire: Track) -> bool:
 
 def _roofed(track: Track, given: FusionInput) -> bool:
     """True for goods on a shelf or fragments of a rack: something solid is right above most of the thing."""
-    if track.label != "box":
+    if track.label != "box" or track.is_segment:
         return False
     box = track.box_m
     lo = (box.lo_m[0], box.lo_m[1], box.hi_m[2] + 1.5 * given.frame.resolution_m)
@@ -171,9 +180,16 @@ def _roofed(track: Track, given: FusionInput) -> bool:
     return float((given.cells[column] == Cell.OCCUPIED).mean()) > 0.2
 
 
+def _nearness(track: Track, thing: MapObject) -> float:
+    """How likely a track is a thing of old, 0 or less for not at all. Bodies change their names as more is seen."""
+    if track.is_segment:
+        return same_body(track.box_m, thing.box_m) if thing.label == OBJECT or thing.names else 0.0
+    return closeness(track.box_m, thing.box_m) if track.label == thing.label else 0.0
+
+
 def _gone(thing: MapObject, tracks: Sequence[Track], given: FusionInput) -> bool:
     """True when a thing of old was absorbed by a track, or its place is now seen free."""
-    if any(t.label == thing.label and closeness(t.box_m, thing.box_m) > 0 for t in tracks):
+    if any(_nearness(t, thing) > 0 for t in tracks):
         return True
     inside = given.cells[cells_in(given.frame, thing.box_m)]
     return inside.size > 0 and float((inside == Cell.FREE).mean()) > 0.9

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from mintpilot.core.geometry import Box, Floats, Vec3
-from mintpilot.core.observation import Attribute, Detection
+from mintpilot.core.observation import OBJECT, Attribute, Detection, NameGuess
 from mintpilot.core.semantic_map import MapObject
 
 
@@ -32,6 +32,12 @@ class Track:
     """Where the largest view was taken from."""
     points_m: Floats | None = None
     """Surface points of the largest view."""
+    is_segment: bool = False
+    """Whether it was found as a body of whatever kind; its label then follows from what its names come to."""
+    claims: Counter[str] = field(default_factory=Counter)
+    """Weighted sums of the probabilities of its names."""
+    claimed: float = 0.0
+    """Sum of the weights."""
 
     @property
     def box_m(self) -> Box:
@@ -51,6 +57,12 @@ class Track:
             for name, votes in sorted(self.votes.items())
         )
 
+    @property
+    def names(self) -> tuple[NameGuess, ...]:
+        """What it may be, likeliest first: the mean over its sightings, since those of one thing err alike."""
+        chances = [(label, total / self.claimed) for label, total in self.claims.items() if self.claimed > 0]
+        return tuple(NameGuess(label=n, probability=p) for n, p in sorted(chances, key=lambda c: (-c[1], c[0])))
+
     def add(self, detection: Detection, eye_m: Floats) -> None:
         """Takes one more sighting in: moving average of the extent, one weighted vote per attribute."""
         lo, hi = np.asarray(detection.box_m.lo_m), np.asarray(detection.box_m.hi_m)
@@ -69,6 +81,12 @@ class Track:
         for attribute in detection.attributes:
             votes = self.votes.setdefault(attribute.name, Counter())
             votes[attribute.value] += weight * (1.0 + min(pixels, 4000.0) / 1000.0)  # type: ignore[assignment]
+        if self.is_segment:
+            for guess in detection.names:
+                self.claims[guess.label] += weight * guess.probability  # type: ignore[assignment]
+            self.claimed += weight
+            best = self.names[0] if self.claims else None
+            self.label = best.label if best is not None and best.probability >= NAMED else OBJECT
         if self.best_view is None or pixels * weight > self._best_pixels:
             self.best_view = (detection.frame_index, *detection.pixels)
             self._best_pixels, self.eye_m, self.points_m = pixels * weight, eye_m, detection.points_m
@@ -83,6 +101,7 @@ class Track:
             score=self.score,
             sightings=len(self.frames),
             best_view=self.best_view,
+            names=self.names,
         )
 
 
@@ -95,12 +114,17 @@ class Tracks:
     def add(self, detection: Detection, eye_m: Floats) -> None:
         """Fuses one detection with the nearest track of its kind, or starts a new one."""
         best, best_closeness = None, 0.0
+        is_segment = detection.label == OBJECT or bool(detection.names)
         for track in self.all:
-            if track.label == detection.label and (c := _alike(track, detection)) > best_closeness:
+            if track.is_segment != is_segment or (not is_segment and track.label != detection.label):
+                continue
+            c = same_body(track.box_m, detection.box_m) if is_segment else _alike(track, detection)
+            if c > best_closeness:
                 best, best_closeness = track, c
         if best is None:
             best = Track(
                 label=detection.label,
+                is_segment=is_segment,
                 lo_m=np.asarray(detection.box_m.lo_m, float),
                 hi_m=np.asarray(detection.box_m.hi_m, float),
             )
@@ -108,6 +132,10 @@ class Tracks:
         best.add(detection, eye_m)
 
 
+NAMED = 0.5
+"""A body has the name that is at least so likely; others are an `object`."""
+PLACE_M, INSIDE = 0.03, 0.6
+"""Error of a place, metres; and the share of a body's extent within another's from which it is a part of it."""
 PERSON_M = 1.3
 """Distance between parts of people up to which they belong to one person, metres."""
 
@@ -130,6 +158,20 @@ def closeness(a: Box, b: Box) -> float:
     distance = float(np.hypot(*(ca - cb)[:2])) + 0.5 * max(0.0, abs(float(ca[2] - cb[2])) - 0.3)
     size = (a.size_m[0] + a.size_m[1] + b.size_m[0] + b.size_m[1]) / 4
     return 1.0 - distance / (0.5 * size + 0.15)
+
+
+def same_body(a: Box, b: Box) -> float:
+    """How likely the extents of two bodies of any kind are one: 1 for equal ones, 0 or less when clearly apart.
+
+    The distance of the centres is compared with half the smaller one's size and the error of a place; one that lies
+    within the other is a part of it.
+    """
+    ca, cb = np.asarray(a.centre_m), np.asarray(b.centre_m)
+    sa, sb = np.maximum(a.size_m, 0.02), np.maximum(b.size_m, 0.02)
+    shared = np.minimum(a.hi_m, b.hi_m) - np.maximum(a.lo_m, b.lo_m)
+    inside = float(np.prod(np.maximum(shared, 0.0)) / min(np.prod(sa), np.prod(sb)))
+    near = 1.0 - float(np.linalg.norm(ca - cb)) / (0.4 * float(min(np.linalg.norm(sa), np.linalg.norm(sb))) + PLACE_M)
+    return max(near, inside - INSIDE)
 
 
 def _vec(array: Floats) -> Vec3:

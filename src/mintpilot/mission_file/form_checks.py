@@ -97,7 +97,8 @@ class FormWords:
             return f"unknown key '{error['loc'][-1]}'; {nearest(str(error['loc'][-1]), known)}"
         if kind in ("union_tag_not_found", "union_tag_invalid"):
             return (
-                "must have one of the keys 'scenario' (a built-in world), 'scene' (solid by solid) or 'map' (your own)"
+                "must have one of the keys 'scenario' (a built-in world), 'scene' (solid by solid), 'map' (your own) "
+                "or 'seen' (made by mintpilot see)"
             )
         if kind in ("literal_error", "enum"):
             known = [str(x) for x in schema.get("enum", [schema.get("const", "")])]

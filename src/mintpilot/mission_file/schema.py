@@ -77,6 +77,14 @@ class PriorsSpec(Spec):
     """That somebody is in a closed room."""
 
 
+class PerceptionSpec(Spec):
+    """What makes objects of pictures."""
+
+    use: Name = "geometric"
+    """Perception by name: `geometric` (boxes, people lying, doors, smoke, fire), `segments` (bodies of any kind,
+    anywhere), or that of a plug-in; `--perception` overrides it."""
+
+
 class GoalSpec(Spec):
     """One step. Give where it is as exactly one of `phrase`, `object`, `room` and `position_m`."""
 
@@ -161,7 +169,7 @@ class MissionFile(Spec):
     instruction: Words
     """What is to be done, in plain words."""
     world: World
-    """Where: a `scenario` by name, an explicit `scene`, or a `map` of your own."""
+    """Where: a `scenario` by name, an explicit `scene`, a `map` of your own, or what was `seen`."""
     goals: Annotated[Several[GoalSpec], Field(min_length=1)] | None = None
     """The steps, in order. Without them they are taken from the instruction."""
     seeks_people: bool | None = None
@@ -174,6 +182,8 @@ class MissionFile(Spec):
     """When to ask, and when to stop."""
     language: LanguageSpec = LanguageSpec()
     """In which language it asks, and with what language model, if any."""
+    perception: PerceptionSpec = PerceptionSpec()
+    """What makes objects of pictures, where the mission is flown with a camera."""
     survey: SurveySpec | None = None
     """The flight that makes the map; not for worlds given as a map."""
     priors: PriorsSpec = PriorsSpec()

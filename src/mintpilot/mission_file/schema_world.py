@@ -125,9 +125,20 @@ class MapWorld(Spec):
     """For the scripted operator; `--seed` overrides it. Default: 0."""
 
 
+class SeenWorld(Spec):
+    """A map that `mintpilot see` made of pictures, with everything that was seen on it."""
+
+    seen: Words
+    """The folder that `mintpilot see SOURCE --out DIR` wrote; relative to the mission file."""
+    start_m: Point3 | None = None
+    """Where the drone takes off. Default: where the first picture was taken."""
+    seed: Annotated[int, Field(ge=0)] | None = None
+    """For the scripted operator; `--seed` overrides it. Default: 0."""
+
+
 def _kind_of_world(value: Any) -> str | None:
-    """Which of the three it is, told by its key."""
-    for key, model in (("scenario", ScenarioWorld), ("scene", SceneWorld), ("map", MapWorld)):
+    """Which of the four it is, told by its key."""
+    for key, model in (("scenario", ScenarioWorld), ("scene", SceneWorld), ("map", MapWorld), ("seen", SeenWorld)):
         if (isinstance(value, dict) and key in value) or isinstance(value, model):
             return model.__name__
     return None
@@ -136,6 +147,7 @@ def _kind_of_world(value: Any) -> str | None:
 World: TypeAlias = Annotated[
     Annotated[ScenarioWorld, Tag("ScenarioWorld")]
     | Annotated[SceneWorld, Tag("SceneWorld")]
-    | Annotated[MapWorld, Tag("MapWorld")],
+    | Annotated[MapWorld, Tag("MapWorld")]
+    | Annotated[SeenWorld, Tag("SeenWorld")],
     Discriminator(_kind_of_world),
 ]

@@ -11,9 +11,10 @@ from mintpilot.core.gap import ABSENT, BLOCKED, PASSABLE, PRESENT, GapKind, kind
 from mintpilot.core.tolerances import SUM_TOLERANCE
 from mintpilot.mission_file.form_checks import nearest, show
 from mintpilot.mission_file.schema import CorrelationSpec, GoalSpec, MissionFile
-from mintpilot.mission_file.schema_world import MapWorld, SceneWorld
+from mintpilot.mission_file.schema_world import MapWorld, SceneWorld, SeenWorld
 from mintpilot.mission_file.semantic_checks_map import map_faults
 from mintpilot.mission_file.semantic_checks_scene import scene_faults
+from mintpilot.mission_file.semantic_checks_seen import seen_faults
 from mintpilot.mission_file.yaml_places import Fault, Path_
 
 _VALUES = {GapKind.OBSTACLE: (PASSABLE, BLOCKED), GapKind.PRESENCE: (PRESENT, ABSENT)}
@@ -24,10 +25,12 @@ def contradictions(mission: MissionFile, base: Path) -> Iterator[Fault]:
     yield from _goal_faults(mission)
     yield from _truth_faults(mission)
     yield from _correlation_faults(mission)
+    if isinstance(mission.world, MapWorld | SeenWorld) and mission.survey is not None:
+        yield _fault(("survey",), "a given map needs no survey flight; remove 'survey'")
     if isinstance(mission.world, MapWorld):
-        if mission.survey is not None:
-            yield _fault(("survey",), "a given map needs no survey flight; remove 'survey'")
         yield from map_faults(mission, mission.world, base)
+    elif isinstance(mission.world, SeenWorld):
+        yield from seen_faults(mission, mission.world, base)
     elif isinstance(mission.world, SceneWorld):
         yield from scene_faults(mission.world.scene)
 
@@ -54,6 +57,8 @@ def _goal_faults(mission: MissionFile) -> Iterator[Fault]:
 
 def _goal_names(mission: MissionFile, goal: GoalSpec, path: Path_) -> Iterator[Fault]:
     world = mission.world
+    if isinstance(world, SeenWorld):
+        return  # its things are known to its own checks
     if not isinstance(world, MapWorld):
         for key in ("object", "room", "truth"):
             if getattr(goal, key) is not None:
@@ -73,6 +78,8 @@ def _goal_names(mission: MissionFile, goal: GoalSpec, path: Path_) -> Iterator[F
 
 
 def _truth_faults(mission: MissionFile) -> Iterator[Fault]:
+    if isinstance(mission.world, SeenWorld):
+        return  # its things are known to its own checks
     if not isinstance(mission.world, MapWorld):
         if mission.truth:
             yield _fault(("truth",), "this world has its own truth; remove 'truth', or write it into the scene")

@@ -24,6 +24,8 @@ EXTREME = "extreme"
 KIND = "kind"
 """Attribute of a reference to a room: what the room is called by: ``kitchen``, ``storage room``."""
 NEAR_M = 3.0
+WEAK_NAME = 0.15
+"""Names that are less likely do not make a thing one that a phrase may mean."""
 _TIE = 0.05
 
 
@@ -87,8 +89,20 @@ def match(reference: Reference, things: Sequence[Thing], view: Standpoint) -> tu
 def _of_label(label: str, things: Sequence[Thing]) -> tuple[Thing, ...]:
     if not label:
         return tuple(things)
-    exact = tuple(t for t in things if _word(t.label) == _word(label))
+    exact = tuple(t for t in things if _word(t.label) == _word(label) or _may_be(t, label))
     return exact or tuple(t for t in things if synonyms(t.label) & synonyms(label))
+
+
+def name_probability(label: str, thing: Thing) -> float:
+    """That the thing is what the label says, as far as its names tell; 1 for one without doubt about its name."""
+    if not thing.names or not label:
+        return 1.0
+    return math.fsum(g.probability for g in thing.names if synonyms(g.label) & synonyms(label))
+
+
+def _may_be(thing: Thing, label: str) -> bool:
+    """Whether a thing has that name weakly: it is then one of those that are asked about."""
+    return bool(thing.names) and name_probability(label, thing) >= WEAK_NAME
 
 
 def _word(label: str) -> str:

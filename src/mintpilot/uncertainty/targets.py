@@ -12,7 +12,7 @@ from mintpilot.core.plan import Site, Stop
 from mintpilot.core.task import Action, Reference, SubGoal, Task
 from mintpilot.uncertainty.describing import describe_apart, seen
 from mintpilot.uncertainty.gaps import LOOK_REACH_M
-from mintpilot.uncertainty.matching import Standpoint, match
+from mintpilot.uncertainty.matching import Standpoint, match, name_probability
 from mintpilot.uncertainty.things import ROOM, Thing, middle_m, nearest_first, synonyms
 
 _REACH_M = {Action.PICK: 1.2, Action.COUNT: 2.5, Action.PHOTOGRAPH: 2.5, Action.REPORT: 2.5}
@@ -120,7 +120,7 @@ def _gap(
         subject=reference.phrase,
         description=reference.phrase if reference.phrase.lower().startswith("the ") else f"the {reference.phrase}",
         values=tuple(t.id for t in found),
-        prior=(1 / len(found),) * len(found),
+        prior=_prior(reference, found),
         position_m=middle_m(t.position_m for t in found),
         candidates=tuple(
             Candidate(
@@ -133,6 +133,13 @@ def _gap(
             for t in found
         ),
     )
+
+
+def _prior(reference: Reference, found: Sequence[Thing]) -> tuple[float, ...]:
+    """P(g | I, V) among the things found: by how likely each one is what the phrase says; equal where that is sure."""
+    weights = [max(name_probability(reference.label, t), 1e-3) for t in found]
+    total = math.fsum(weights)
+    return tuple(weight / total for weight in weights)
 
 
 def _site(thing: Thing, subgoal: SubGoal, value: str = "") -> Site:

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from mintpilot.core.geometry import Vec3
-from mintpilot.core.observation import Attribute
+from mintpilot.core.observation import Attribute, NameGuess
 from mintpilot.core.semantic_map import Room, SemanticMap
 
 ROOM = "room"
@@ -49,6 +49,8 @@ class Thing:
     """For rooms: the words of their description, e.g. ``closed kitchen``."""
     name: str = ""
     """For rooms: the noun that their description calls them by: ``kitchen``, or only ``room``."""
+    names: tuple[NameGuess, ...] = ()
+    """What it may be, where that is not sure; what is missing to 1 is for none of them."""
     searched: bool = False
     """For rooms: already looked into."""
     behind_door: bool = False
@@ -88,6 +90,7 @@ def things_of(map: SemanticMap) -> tuple[Thing, ...]:
             position_m=o.position_m,
             size_m=o.box_m.size_m,
             goal_m=o.position_m,
+            names=o.names,
             behind_door=any(_is_inside(o.position_m, room) for room in map.rooms),
         )
         for o in map.objects

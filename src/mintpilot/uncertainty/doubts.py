@@ -1,0 +1,97 @@
+"""What pictures leave open of the things themselves: is that a person, and which of them, if any, is meant?"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from mintpilot.core.gap import ABSENT, PRESENT, GapKind, KnowledgeGap
+from mintpilot.core.observation import OBJECT
+from mintpilot.core.semantic_map import MapObject
+from mintpilot.uncertainty.things import synonyms
+
+PERSON = "person"
+DOUBTFUL = (0.25, 0.9)
+"""Between these probabilities it is asked whether a thing is a person."""
+NOT_SEEN = 0.1
+"""Probability, before anything is known of a place, that what is sought in it was not seen yet."""
+UNNAMED = 0.03
+"""Probability of any one name for a thing that nobody could name."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Referents:
+    """P(g | I, V): what a phrase may mean among the things that were seen."""
+
+    things: tuple[tuple[str, float], ...]
+    """Id and probability, likeliest first."""
+    none_of_them: float
+    """That it means none of the things that were seen, although it is in view."""
+    not_yet_seen: float
+    """That it was not in any picture."""
+
+
+def doubtful_people(objects: Sequence[MapObject]) -> list[KnowledgeGap]:
+    """One gap for each thing that may be a person: a doubtful person is asked about, never left out in silence."""
+    gaps = []
+    for thing in sorted(objects, key=lambda o: o.id):
+        chance = next((g.probability for g in thing.names if g.label == PERSON), 0.0)
+        if DOUBTFUL[0] <= chance < DOUBTFUL[1]:
+            gaps.append(
+                KnowledgeGap(
+                    id=f"presence:{thing.id}",
+                    kind=GapKind.PRESENCE,
+                    subject=thing.id,
+                    description=said_of(thing),
+                    values=(PRESENT, ABSENT),
+                    prior=(chance, 1.0 - chance),
+                    position_m=thing.position_m,
+                )
+            )
+    return gaps
+
+
+def said_of(thing: MapObject) -> str:
+    """A thing by what can be said of it: ``the red box on the table``, ``the knee-high grey thing on the floor``."""
+    words = {a.name: a.value for a in thing.attributes}
+    noun = "thing" if thing.label in (OBJECT, PERSON) and thing.names else thing.label
+    parts = [
+        "the",
+        words.get("height", "") if noun == "thing" else "",
+        words.get("colour", ""),
+        noun,
+        words.get("place", ""),
+    ]
+    return " ".join(part for part in parts if part)
+
+
+def referents(label: str, fitting: Sequence[MapObject], *, unseen: float = NOT_SEEN) -> Referents:
+    """What a phrase may mean, by how sure the names of the things are.
+
+    Each thing is what the phrase says with the probability of its name; exactly one is meant, if any. A thing without
+    doubt about its name counts fully, one that nobody could name a little.
+
+    Args:
+        label: the noun of the phrase.
+        fitting: things whose known attributes do not speak against the phrase.
+        unseen: probability that it was in no picture.
+    """
+    chances = {o.id: min(0.999, _chance(label, o)) for o in fitting}
+    odds = {i: p / (1 - p) for i, p in chances.items() if p > 0.005}
+    # Exactly one is meant: the odds of each against none of them being so called.
+    total = math.fsum(odds.values())
+    seen = (1.0 - unseen) / (1.0 + total)
+    named = sorted(((i, odd * seen) for i, odd in odds.items()), key=lambda pair: (-pair[1], pair[0]))
+    return Referents(things=tuple(named), none_of_them=seen, not_yet_seen=unseen)
+
+
+def _chance(label: str, thing: MapObject) -> float:
+    alike = synonyms(label)
+    if not thing.names:
+        if thing.label == OBJECT:
+            return UNNAMED
+        return 1.0 if synonyms(thing.label) & alike else 0.0
+    said = [g.probability for g in thing.names if synonyms(g.label) & alike]
+    rest = 1.0 - math.fsum(g.probability for g in thing.names)
+    return math.fsum(said) if said else UNNAMED * max(0.0, rest)
