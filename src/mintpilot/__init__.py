@@ -16,7 +16,7 @@ from typing import Any
 __version__ = "0.1.0"
 
 _PLACES = {
-    "DeliberationReport": "mintpilot.assembly.deliberation",
+    "DeliberationReport": "mintpilot.assembly.deliberation_report",
     "MissionFile": "mintpilot.mission_file.schema",
     "MissionRecord": "mintpilot.recording.record",
     "check_mission": "mintpilot.assembly.api",

@@ -19,6 +19,7 @@ from mintpilot.core.events import Asked, Event
 from mintpilot.core.mission import Outcome
 from mintpilot.core.ports import Understand
 from mintpilot.core.query import Answer, Question
+from mintpilot.interaction.answers import answer_of
 from mintpilot.interaction.scripted import FunctionOperator, ScriptedOperator
 from mintpilot.interaction.terminal import TerminalOperator
 from mintpilot.recording.record import read_record
@@ -31,7 +32,7 @@ MEDICINE = demo_path("medicine")
 def server(monkeypatch: pytest.MonkeyPatch) -> Iterator[LlmServer]:
     """A server that knows other words. Nobody loses patience with it here, however busy this machine is."""
     pytest.importorskip("pydantic_ai")
-    monkeypatch.setattr("mintpilot.interaction.hearing.SPEAKING_S", 60.0)
+    monkeypatch.setattr("mintpilot.mission.shell.SPEAKING_S", 60.0)
     monkeypatch.setattr("mintpilot.assembly.talk.SCREEN_S", 60.0)
     running = LlmServer(lambda prompt: friendly(prompt) or f"{{}} {KEY}")
     monkeypatch.setenv("MINTPILOT_LLM_URL", running.url)
@@ -125,10 +126,9 @@ class Talker(FunctionOperator):
         self._understand, self._utterances = understand, iter(utterances)
 
     def ask(self, question: Question, patience_s: float) -> Answer:
-        text = next(self._utterances)
-        meaning = self._understand(text, question, patience_s)
-        assert meaning.reply is not None
-        return Answer(reply=meaning.reply, latency_s=0.0, text=text, also=meaning.also, understood_by=meaning.by)
+        pending = question.read_back.reply if question.read_back is not None else None
+        text = "yes" if pending is not None else next(self._utterances)
+        return answer_of(self._understand(text, question, patience_s, pending=pending), text, question)
 
     def tell(self, text: str) -> None:
         """Nobody is there."""
@@ -187,7 +187,11 @@ def test_the_first_words_are_on_the_screen_before_the_model_has_answered(server:
             vehicle="kinematic",
             llm="endpoint",
             operator=lambda talk: TerminalOperator(
-                Console(file=screen, width=200), stdin, understand=talk.understand, lang=talk.lang
+                Console(file=screen, width=200),
+                stdin,
+                understand=talk.understand,
+                order_of=talk.order_of,
+                lang=talk.lang,
             ),
         )
     os.close(writes)

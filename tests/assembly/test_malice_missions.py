@@ -31,6 +31,7 @@ from mintpilot.core.gap import PASSABLE, GapKind
 from mintpilot.core.mission import Outcome, Verdict
 from mintpilot.core.ports import Understand
 from mintpilot.core.query import Answer, Question, Reply
+from mintpilot.interaction.answers import answer_of
 from mintpilot.interaction.scripted import FunctionOperator, ScriptedOperator
 from mintpilot.language.doubles import FunctionModel
 from mintpilot.mission.loop import fly_mission
@@ -106,14 +107,11 @@ class Person(FunctionOperator):
         if any(word in heard.text.lower().split() for word in TURNED):
             yes = not yes
         text = str(self._rng.choice([*(self.YES if yes else self.NO), *self.NEITHER[: self._rng.integers(0, 3)]]))
-        meaning = self._understand(text, heard, 0.4)
-        return Answer(
-            reply=meaning.reply or Reply.UNSURE,
-            latency_s=1.0,
-            text=text,
-            also=meaning.also,
-            understood_by=meaning.by,
-        )
+        pending = heard.read_back.reply if heard.read_back is not None else None
+        if pending is not None:
+            text = "yes" if (pending is Reply.YES) is yes else "no"
+        reading = self._understand(text, heard, 0.4, pending=pending)
+        return answer_of(reading, text, heard, latency_s=1.0)
 
     def tell(self, text: str) -> None:
         """Nods."""
@@ -276,8 +274,7 @@ class _Odd(FunctionOperator):
         self._understand = understand
 
     def ask(self, question: Question, patience_s: float) -> Answer:
-        meaning = self._understand("hm hm", replace(question), 1.0)
-        return Answer(reply=meaning.reply or Reply.UNSURE, latency_s=0.0, text="hm hm", understood_by=meaning.by)
+        return answer_of(self._understand("hm hm", replace(question), 1.0), "hm hm", question)
 
     def tell(self, text: str) -> None:
         """Nods."""

@@ -73,8 +73,8 @@ class Experiment(Part):
     prices: Prices = Prices()
     tell_prices: bool = False
     """Whether the methods know the prices; else they run with their own defaults, as in a mission."""
-    think_s: float = Field(default=3.0, ge=0)
-    """How long the scripted person thinks about a question, seconds. Stated, not slept."""
+    think_s: float = Field(default=0.0, ge=0)
+    """How long the scripted person thinks about a question, seconds of mission time."""
     llm: str = "template"
     """Language model that may propose questions; ``template``: none."""
     time_limit_s: float = Field(default=120.0, gt=0)

@@ -157,7 +157,7 @@ def _experiment(
     seed: int,
     vehicle: Vehicle,
     *,
-    think_s: float = 3.0,
+    think_s: float = 0.0,
     tell_prices: bool = False,
     share_survey: bool = False,
     llm: str = TEMPLATE,

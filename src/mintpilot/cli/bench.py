@@ -60,7 +60,7 @@ def boxes(
     Args:
         trials: Number of arrangements of boxes.
         vehicle: Physics and camera, or a fast point mass.
-        think: Seconds that the scripted person takes for an answer; part of the latency, not waited for.
+        think: Seconds that the scripted person takes for an answer; the drone waits for them in mission time.
         flags: What all experiments share.
     """
 

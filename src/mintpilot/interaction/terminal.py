@@ -17,8 +17,9 @@ from rich.text import Text
 from mintpilot.core.errors import DeviceError
 from mintpilot.core.inputs import Answered, MoreTimeWanted, OperatorInput, Ordered, QuestionShown
 from mintpilot.core.ports import Operator, Understand
-from mintpilot.core.query import NO_PART, YES_PART, Answer, Evidence, Order, Query, Question, Reply, Standing
-from mintpilot.core.reading import AnsweredBy, Reading, ReadingKind, reply_of
+from mintpilot.core.query import Answer, Order, Question, Reply, Standing
+from mintpilot.core.reading import AnsweredBy, Reading, ReadingKind
+from mintpilot.interaction.answers import answer_of
 from mintpilot.interaction.screen_words import screen_words
 
 _LONGEST_LINE = 4096
@@ -174,7 +175,7 @@ class TerminalOperator(Operator):
         if reading.order is not None:
             return [Ordered(time_s=time_s, order=reading.order, operator=NAME, text=line)]
         if turn is None or turn.question.id != name:
-            return [Answered(time_s=time_s, question=name, answer=_answer(reading, line, None, 0.0), operator=NAME)]
+            return [Answered(time_s=time_s, question=name, answer=answer_of(reading, line, None), operator=NAME)]
         if reading.kind is ReadingKind.WAIT:
             return [MoreTimeWanted(time_s=time_s, question=name)]
         if reading.kind in (ReadingKind.REPEAT, ReadingKind.WHY, ReadingKind.WHERE, ReadingKind.SHOW):
@@ -184,7 +185,7 @@ class TerminalOperator(Operator):
         waited_s = time_s - turn.shown_s if turn.shown_s is not None else 0.0
         if reading.kind is ReadingKind.AGAIN:
             return self._again(turn, line, time_s, waited_s)
-        answer = _answer(reading, line, turn.question, waited_s)
+        answer = answer_of(reading, line, turn.question, latency_s=waited_s)
         if answer.standing is not Standing.UNCONFIRMED:
             self._turn = None
         return [Answered(time_s=time_s, question=name, answer=answer, operator=NAME)]
@@ -266,33 +267,6 @@ class TerminalOperator(Operator):
                 self._pending += b"\n"
         line, _, self._pending = self._pending.partition(b"\n")
         return line.decode("utf-8", errors="replace").strip()
-
-
-def _answer(reading: Reading, line: str, question: Question | None, waited_s: float) -> Answer:
-    """What a reading answers. Agreement that is not plain, and evidence, are read back where they take caution away."""
-    kind = reading.kind
-    plain = kind in (ReadingKind.YES, ReadingKind.NO, ReadingKind.UNSURE)
-    if kind is ReadingKind.EVIDENCE and question is not None:
-        reply = reply_of(reading, question)
-    else:
-        reply = reading.reply if reading.reply is not None else Reply.UNSURE
-    standing = Standing.PLAIN if plain else Standing.UNCONFIRMED
-    read_back = question.read_back if question is not None else None
-    if plain and read_back is not None and read_back.reply is reply:
-        standing = Standing.CONFIRMED
-    also = tuple(
-        Evidence(query=Query(literals=(literal,)), part=YES_PART if holds else NO_PART)
-        for literal, holds in reading.evidence
-    )
-    return Answer(
-        reply=reply,
-        latency_s=waited_s,
-        text=line,
-        also=also,
-        understood_by=reading.by,
-        standing=standing,
-        by="typed",
-    )
 
 
 def _printable(text: str) -> str:

@@ -14,6 +14,9 @@ from mintpilot.mission.permissions import enlarges, permissions, revoke
 from mintpilot.mission.state import Activity, Goal, OpenQuestion
 from mintpilot.mission.transition import Transition
 
+MAX_READ_BACKS = 2
+"""An answer that was read back so often and never confirmed counts as "I don't know"."""
+
 
 def take_over(t: Transition, reasoning: Reasoning) -> None:
     """Takes over what a deliberation has found: the belief over the gaps, what is settled, and the explanations."""
@@ -77,8 +80,12 @@ def answered(t: Transition, event: Answered) -> None:
     if answer.standing is Standing.CONFIRMED and pending is not None and pending.part == answer.part:
         answer = replace(pending, standing=Standing.CONFIRMED, latency_s=answer.latency_s)
     elif _must_be_read_back(t, open_.question.query, answer):
+        if open_.read_backs >= MAX_READ_BACKS:
+            _learn(t, open_.question.query, open_.question.text, replace(answer, reply=Reply.UNSURE, option=None))
+            t.withdraw("no answer was confirmed")
+            return
         read_back = replace(open_.question, read_back=replace(answer, standing=Standing.UNCONFIRMED))
-        t.set(question=replace(open_, question=read_back))
+        t.set(question=replace(open_, question=read_back, read_backs=open_.read_backs + 1))
         t.give(ShowQuestion(question=read_back, patience_s=max(0.0, open_.deadline_s - t.state.clock_s)))
         return
     _learn(t, open_.question.query, open_.question.text, answer)
@@ -131,7 +138,7 @@ def _waited_s(t: Transition, open_: OpenQuestion) -> float:
 
 def _learn(t: Transition, query: Query, text: str, answer: Answer) -> None:
     result = update(t.beliefs, query, answer, t.state.setup.mission.asking)
-    t.set(beliefs=result.state)
+    t.set(beliefs=result.state, learnt=answer)
     if result.contradiction:
         t.note("contradiction", f"The answer to '{text}' goes against an earlier one; it was not taken over.")
     elif result.extra_refused:

@@ -146,8 +146,8 @@ def _asked(before: MissionState, event: Input, after: MissionState) -> Iterator[
     open_ = before.question
     if open_ is None or (after.question is not None and after.question.question.id == open_.question.id):
         return
-    if isinstance(event, Answered) and event.question == open_.question.id:
-        answer = event.answer
+    if isinstance(event, Answered) and event.question == open_.question.id and after.learnt is not None:
+        answer = after.learnt
     elif after.clock_s >= open_.deadline_s and not isinstance(event, Ordered):
         begun_s = open_.asked_s if open_.shown_s is None else open_.shown_s
         answer = Answer(reply=Reply.TIMEOUT, latency_s=max(0.0, after.clock_s - begun_s))

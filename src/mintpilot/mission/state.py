@@ -11,7 +11,7 @@ from mintpilot.core.geometry import Floats
 from mintpilot.core.inputs import Link
 from mintpilot.core.mission import Mission, Outcome, Verdict
 from mintpilot.core.plan import Plan
-from mintpilot.core.query import Query, Question
+from mintpilot.core.query import Answer, Query, Question
 from mintpilot.core.semantic_map import SemanticMap
 from mintpilot.core.trajectory import VehicleState
 from mintpilot.core.tree import GapExplanation, ScoredQuery
@@ -94,6 +94,8 @@ class OpenQuestion:
     shown_s: float | None = None
     first_text: str = ""
     """The words that were there first, where better ones followed; else empty."""
+    read_backs: int = 0
+    """How often an answer to it was read back."""
     extended: bool = False
     """Whether more time was granted."""
     reworded_s: float | None = None
@@ -142,6 +144,8 @@ class MissionState:
     assume_passable: frozenset[str] = frozenset()
     motion: OngoingMotion | None = None
     question: OpenQuestion | None = None
+    learnt: Answer | None = None
+    """The answer that was learnt from last, as it counted."""
     earlier: tuple[tuple[str, Query], ...] = ()
     """Questions that are no longer open: id and query, oldest first."""
     request: PendingRequest | None = None
