@@ -111,6 +111,7 @@ def test_a_planner():
 
 class Quiet:
     attended = False
+    hears_once = False
 
     def show(self, question, patience_s):
         self.question = question

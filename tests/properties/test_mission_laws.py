@@ -49,7 +49,7 @@ from mintpilot.mission.directives import (
     WithdrawQuestion,
 )
 from mintpilot.mission.requests import Request
-from mintpilot.mission.state import MissionState, Setup
+from mintpilot.mission.state import Activity, MissionState, Setup
 from mintpilot.mission.step import initial_state, step
 from mintpilot.mission.worker import worked_out
 
@@ -151,6 +151,8 @@ class Mission(RuleBasedStateMachine):
         motion = move.motion
         assert isinstance(motion, FollowTrajectory)
         assert self.state.beliefs is not None
+        if self.state.activity is Activity.RETREAT:
+            return  # back out of a place that was found doubtful only now, along the way it came
         known = self.state.beliefs.map
         open_ = np.zeros(known.cells.size, bool)
         for region in known.regions:
@@ -255,7 +257,7 @@ class Mission(RuleBasedStateMachine):
         request = self.requests.pop(data.draw(st.integers(0, len(self.requests) - 1)))
         self.feed(DeliberationEnded(time_s=self.time_s, request=request.id, decision=None, reason="a fault"))
 
-    @rule(number=st.integers(0, 400), reply=st.sampled_from(Reply))
+    @rule(number=st.integers(0, 400), reply=st.sampled_from([Reply.YES, Reply.NO, Reply.UNSURE, Reply.TIMEOUT]))
     def an_answer_to_any_question(self, number: int, reply: Reply) -> None:
         answer = Answer(reply=reply, latency_s=1.0, text=reply.value)
         self.feed(Answered(time_s=self.time_s, question=f"q{number}", answer=answer))

@@ -47,7 +47,7 @@ def test_the_summary_has_the_promised_form(make_events):
     short = json.loads(summary(record_of(make_events())).model_dump_json())
     assert set(short) == KEYS
     assert short["outcome"] == "success"
-    assert short["schema_version"] == 1
+    assert short["schema_version"] == 2
     assert short["seed"] == 7
     question = short["questions"][0]
     assert question == {
@@ -128,10 +128,10 @@ def test_things_seen_are_placed(make_events):
     assert seen["room-1"].view == (3, 20, 20, 60, 100)
 
 
-@pytest.mark.parametrize("version", [0, 2, None, "1"])
+@pytest.mark.parametrize("version", [0, 1, 3, None, "2"])
 def test_other_versions_are_refused_with_a_next_step(tmp_path, version):
     (tmp_path / "record.json").write_text(json.dumps({"schema_version": version}))
-    with pytest.raises(RecordError, match=r"schema_version is .*this program reads 1; read it with"):
+    with pytest.raises(RecordError, match=r"schema_version is .*this program reads 2; read it with"):
         read_record(tmp_path)
 
 

@@ -110,6 +110,11 @@ class Attended(Operator):
         """As the operator inside."""
         return self._operator.attended
 
+    @property
+    def hears_once(self) -> bool:
+        """As the operator inside."""
+        return self._operator.hears_once
+
     def show(self, question: Question, patience_s: float) -> None:
         """As the operator inside."""
         self._narrator.rest()

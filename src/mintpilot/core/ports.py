@@ -251,6 +251,11 @@ class Operator(Protocol):
         """True where a person sits: simulators then run at the speed of the clock on the wall."""
         ...
 
+    @property
+    def hears_once(self) -> bool:
+        """True where a question is heard, not seen: better words are waited for shortly before it is put."""
+        ...
+
     def show(self, question: Question, patience_s: float) -> None:
         """Shows or says the question, with the consequences of each reply. The same id again: in better words.
 

@@ -29,6 +29,7 @@ class _Script(Operator):
     """What the operators of this file share: questions are seen at once, and answered after the answer's latency."""
 
     attended = False
+    hears_once = True
 
     def __init__(self, name: str) -> None:
         self._name = name

@@ -94,8 +94,13 @@ class TerminalOperator(Operator):
 
     @property
     def attended(self) -> bool:
-        """A person sits here: True where the input is a terminal."""
-        return os.isatty(self._fd)
+        """A person sits here: True at a terminal, and of a pipe while an answer may still come through it."""
+        return os.isatty(self._fd) or (self._turn is not None and not self._ended)
+
+    @property
+    def hears_once(self) -> bool:
+        """False: better words are shown below the first ones."""
+        return False
 
     def show(self, question: Question, patience_s: float) -> None:
         """Shows the question with the consequences of Yes and No; better words are shown below the first ones."""
@@ -143,7 +148,11 @@ class TerminalOperator(Operator):
             if not line:
                 continue
             if self._turn is None:
-                events += self._order(line, time_s)
+                order = self._order_of(line)
+                if order is None and not os.isatty(self._fd):
+                    self._pending = line.encode() + b"\n" + self._pending  # a later question's
+                    break
+                events += self._order(line, order, time_s)
                 continue
             future = self._pool.submit(self._understood, line, self._turn, time_s)
             self._understanding = (self._turn.question.id, line, future)
@@ -154,8 +163,7 @@ class TerminalOperator(Operator):
         events += self._heard(time_s, 0.0)
         return tuple(events)
 
-    def _order(self, line: str, time_s: float) -> list[OperatorInput]:
-        order = self._order_of(line)
+    def _order(self, line: str, order: Order | None, time_s: float) -> list[OperatorInput]:
         if order is None:
             self._console.print(Text(self._words.nothing_asked, style="yellow"))
             return []

@@ -48,7 +48,6 @@ class Shell:
         self.journal = Journal(components.recorder, digests=components.digests)
         self._worker = components.worker(components.parts)
         self._operators: list[Operator] = list(components.operators)
-        self._attended = any(operator.attended for operator in self._operators)
         self._monitor: PathMonitor | None = None
         self._moving = self._braking = False
         self._next_look_s = 0.0
@@ -56,7 +55,6 @@ class Shell:
         self._begun = time.perf_counter()
         self._flying_s = 0.0
         self._now_s = components.vehicle.state().time_s
-        self._wall_offset_s = self._clock() - self._now_s
 
     def observe(self, state: MissionState) -> list[Input]:
         """What has come since the last call; where nothing has, lets time pass until the next thing may happen."""
@@ -149,9 +147,10 @@ class Shell:
 
     def _advance(self, state: MissionState) -> list[Input]:
         """Lets time pass: the vehicle moves on, the camera looks when it is due."""
-        parts, began = self._parts, time.perf_counter()
+        parts, began, wall_s, before_s = self._parts, time.perf_counter(), self._clock(), self._now_s
+        attended = self._attended()
         until_s = min(self._now_s + parts.camera_period_s, state.next_deadline_s())
-        if self._attended:
+        if attended:
             until_s = min(until_s, self._now_s + ATTENDED_S)
         watching = parts.watch_map and self._moving and not self._braking
         if watching:
@@ -178,9 +177,13 @@ class Shell:
             events.append(LinkChanged(time_s=self._now_s, link=Link.TELEMETRY, up=False, reason=failure.reason))
         events.append(Ticked(time_s=self._now_s, vehicle=vehicle))
         self._flying_s += time.perf_counter() - began
-        if self._attended:
-            self._sleep(max(0.0, self._now_s + self._wall_offset_s - self._clock()))
+        if attended:
+            self._sleep(max(0.0, self._now_s - before_s - (self._clock() - wall_s)))
         return events
+
+    def _attended(self) -> bool:
+        """Whether a person is attached: time then passes as fast as on the wall."""
+        return any(operator.attended for operator in self._operators)
 
     def _glance(self, state: MissionState) -> list[Input]:
         """A picture in flight; where the path is monitored, the map with the monitor's verdict."""
@@ -203,7 +206,7 @@ class Shell:
         if improve is None or question.attempt > 1 or (self._rewording and self._rewording[0] == question.id):
             return
         self._rewording = (question.id, Rewording(improve, question))
-        if not self._attended:
+        if all(operator.hears_once for operator in self._operators):
             self._rewording[1].wait(SPEAKING_S)
 
     def _reworded(self) -> list[Input]:

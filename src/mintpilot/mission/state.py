@@ -109,8 +109,8 @@ class PendingRequest:
     id: int
     purpose: Purpose
     deadline_s: float
-    known: frozenset[str]
-    """Regions and rooms of the map that it looks at."""
+    map: SemanticMap
+    """What it looks at."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

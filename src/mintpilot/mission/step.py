@@ -4,7 +4,16 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from mintpilot.core.decisions import AskQuestion, Explore, FlyPlan, FlyTrajectory, GoBack, NoPlan, RefuseFlight
+from mintpilot.core.decisions import (
+    AskQuestion,
+    Decision,
+    Explore,
+    FlyPlan,
+    FlyTrajectory,
+    GoBack,
+    NoPlan,
+    RefuseFlight,
+)
 from mintpilot.core.inputs import (
     Answered,
     DeliberationEnded,
@@ -25,9 +34,11 @@ from mintpilot.core.trajectory import VehicleState
 from mintpilot.mission import asking, flying, ordering, surveying
 from mintpilot.mission.belief_state import BeliefState
 from mintpilot.mission.directives import Directive
+from mintpilot.mission.path_monitor import with_passable
 from mintpilot.mission.requests import Purpose
 from mintpilot.mission.state import Activity, Goal, MissionState, PendingRequest, Setup, uncertain_things
 from mintpilot.mission.transition import Transition
+from mintpilot.planning.checks import check_trajectory
 from mintpilot.reasoning.belief import prior_belief
 
 MAX_REFUSALS = 3
@@ -190,10 +201,12 @@ def _deliberated(t: Transition, event: DeliberationEnded) -> None:
     if decision is None:
         _without_decision(t, request, event.reason)
         return
-    if request.purpose is Purpose.MISSION and not isinstance(decision, FlyTrajectory) and _is_outdated(t, request):
+    if _is_outdated(t, request, decision):
         t.set(drops=t.state.drops + 1)
         if t.state.drops >= MAX_DROPS:
             _without_decision(t, request, "new things kept being seen meanwhile")
+        elif request.purpose is Purpose.LEG:
+            flying.next_leg(t)
         return
     t.set(drops=0)
     match decision:
@@ -218,9 +231,22 @@ def _deliberated(t: Transition, event: DeliberationEnded) -> None:
             flying.refused(t, decision) if request.purpose is Purpose.LEG else flying.no_way_back(t, decision)
 
 
-def _is_outdated(t: Transition, request: PendingRequest) -> bool:
-    """Whether things that it could not know of are uncertain now."""
-    return not set(uncertain_things(t.beliefs.map)) <= request.known
+def _is_outdated(t: Transition, request: PendingRequest, decision: Decision) -> bool:
+    """Whether the map that has come meanwhile makes the decision void.
+
+    A decision on the mission is void where things that it could not know of are uncertain now, a flight where its
+    trajectory does not pass the check any more. The way back out of a doubtful place always counts.
+    """
+    map = t.beliefs.map
+    if map is request.map:
+        return False
+    if isinstance(decision, AskQuestion | FlyPlan | NoPlan):
+        return not set(uncertain_things(map)) <= set(uncertain_things(request.map))
+    trajectory = getattr(decision, "trajectory", None)
+    if trajectory is None or getattr(decision, "retreat", False):
+        return False
+    believed = with_passable(map, t.state.assume_passable if request.purpose is Purpose.LEG else frozenset())
+    return bool(check_trajectory(trajectory, believed, t.state.setup.mission.limits))
 
 
 def _without_decision(t: Transition, request: PendingRequest, reason: str) -> None:

@@ -137,7 +137,7 @@ class Transition:
             id=request.id,
             purpose=purpose,
             deadline_s=state.clock_s + DELIBERATION_S,
-            known=frozenset(uncertain_things(beliefs.map)),
+            map=beliefs.map,
         )
         self.set(request=pending, activity=Activity.NONE)
         self.give(Deliberate(request=request))
