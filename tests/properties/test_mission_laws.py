@@ -79,7 +79,7 @@ def decided(request: Request) -> DeliberationEnded:
 class Mission(RuleBasedStateMachine):
     """One mission, with everything around it played by the rules below."""
 
-    @initialize(calm=st.booleans())
+    @initialize(calm=st.sampled_from([False, False, True]))
     def begin(self, calm: bool) -> None:
         """A calm mission meets no orders, clouds, refusals and lost links: it gets far."""
         world = sample_world()
@@ -366,5 +366,5 @@ class TestMissionLaws(Mission.TestCase):
     def runTest(self) -> None:  # noqa: N802  (unittest's own name)
         OUTCOMES.clear()
         super().runTest()
-        assert OUTCOMES[Outcome.SUCCESS] >= 3, OUTCOMES
-        assert OUTCOMES[Outcome.ABORTED] >= 1, OUTCOMES
+        assert OUTCOMES[Outcome.SUCCESS] >= 1, OUTCOMES
+        assert OUTCOMES.total() > OUTCOMES[Outcome.SUCCESS], OUTCOMES
