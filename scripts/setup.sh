@@ -106,7 +106,7 @@ else
 fi
 install_gl
 say "installing MintPilot and what it needs (a minute or two the first time)"
-if ! "$VENV/bin/python" -m pip install --quiet --disable-pip-version-check -e ".[$EXTRAS]"; then
+if ! "$VENV/bin/python" -m pip install --quiet --quiet --disable-pip-version-check -e ".[$EXTRAS]"; then
     say "pip could not install the packages; check the network or the package index, then run make setup again"
     exit 3
 fi
