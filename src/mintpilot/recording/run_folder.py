@@ -40,7 +40,6 @@ from mintpilot.recording.build import build_record, versions
 from mintpilot.recording.event_log import EVENTS_FILE, EventLogWriter
 from mintpilot.recording.frames import FrameStore, write_jpeg
 from mintpilot.recording.history import History
-from mintpilot.recording.products import write_products
 from mintpilot.recording.record import MissionRecord, NoticeRecord
 
 _DECISIONS = (MissionStarted, Deliberated, Asked, PlanChosen, LegFlown, MissionEnded)
@@ -116,6 +115,8 @@ class RunFolder(Recorder):
             reason: why the mission ended, in one sentence, in case that no verdict was recorded; it then counts as
                 aborted. A second call changes nothing.
         """
+        from mintpilot.recording.products import write_products  # draws with matplotlib: only a finished run needs it
+
         if self._record is not None:
             return self._record
         self._guard("the end of the events", self._events.close)

@@ -6,7 +6,6 @@ import math
 from typing import Any
 
 import numpy as np
-from scipy.signal import lfilter
 
 from mintpilot.core.geometry import Floats
 from mintpilot.simulation.control import GRAVITY_MPS2, Controller
@@ -104,6 +103,8 @@ class Gusts:
 
     def draw(self, n: int) -> Floats:
         """The next n samples (n, 3), newtons, going on from the last ones."""
+        from scipy.signal import lfilter  # a second of start-up: only who flies with physics pays for it
+
         kicks = self._rng.normal(0.0, self._kick_n, (n, 3))
         memory = self._keep * self._last[None]
         gusts: Floats = lfilter([1.0], [1.0, -self._keep], kicks, axis=0, zi=memory)[0]
