@@ -50,8 +50,9 @@ Lengths are metres, times seconds, angles radians; x is east, y north, z up. Wor
 and `false` are truth values, `yes` and `no` are words. Anchors, aliases and tags are not read.
 
 Four kinds of worlds: a `scenario` by name, an explicit `scene`, a `map` of your own, or what `mintpilot see` made of
-pictures (`seen`). Only cells that the map shows free are flown through. The coordinates of a MovingAI map are those of its scenario files, times the
-resolution. A pixel of a ROS map, by the first line that fits (its occupancy is 1 - shade, with `negate` the shade):
+pictures (`seen`). Only cells that the map shows free are flown through. The coordinates of a MovingAI map are those
+of its scenario files, times the resolution. A pixel of a ROS map, by the first line that fits (its occupancy is 1 -
+shade, with `negate` the shade):
 
 1. not wholly opaque (alpha, transparent colour or palette entry), in every `mode`: unknown;
 2. `mode: raw`: the grey value, 0 to 100, is the occupancy in percent; above 100: unknown;
