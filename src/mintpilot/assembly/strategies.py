@@ -81,7 +81,9 @@ def _value(text: str) -> Argument:
 
 def _made(port: str, name: str, seed: int, arguments: Mapping[str, Argument]) -> Any:
     kind = load(port, name)
-    taken = inspect.signature(kind).parameters
+    # A class that inherits its constructor from a protocol shows *args and **kwargs until it was called once.
+    named = (inspect.Parameter.POSITIONAL_OR_KEYWORD, inspect.Parameter.KEYWORD_ONLY)
+    taken = {key: one for key, one in inspect.signature(kind).parameters.items() if one.kind in named}
     hints = _hints(kind)
     known = [key for key in taken if key != _SEED and hints.get(key, str) in _SIMPLE]
     for key, value in arguments.items():
