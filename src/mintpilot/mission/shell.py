@@ -124,9 +124,10 @@ class Shell:
         return judge.final() if believed.outcome is Outcome.SUCCESS else believed
 
     def close(self) -> None:
-        """Leaves the vehicle holding."""
+        """Leaves the vehicle holding, and ends the worker."""
         with suppress(DeviceError):
             self._parts.vehicle.hold()
+        self._worker.close()
 
     def _heard(self) -> list[Input]:
         """What operators and worker bring without time passing."""
