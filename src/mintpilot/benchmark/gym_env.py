@@ -261,7 +261,8 @@ class ElicitationEnv(gymnasium.Env[Observation, np.int64]):
             commits = expected_cost_s(priced, now.mint, now.commits)
         seconds = np.array([commits, failure_s if best is None else best.cost_s, self._prices.question_s, failure_s])
         left = max(0.0, 1.0 - self._questions / self._max_questions)
-        return np.clip(np.append(SCALE * seconds, left), 0.0, MOST).astype(np.float32)
+        costs: NDArray[np.float32] = np.clip(np.append(SCALE * seconds, left), 0.0, MOST).astype(np.float32)
+        return costs
 
     def _info(self) -> dict[str, Any]:
         return {"world": self._number, "gaps": [gap.id for gap in self._moment.gaps], "questions": self._questions}
