@@ -80,6 +80,7 @@ TITLES = {
     "SceneWorld": "world by scene",
     "MapWorld": "world by map",
     "SeenWorld": "world by what was seen",
+    "GeoreferenceSpec": "georeference",
     "SceneSpec": "scene",
     "KeepAwaySpec": "distance to be kept",
     "SolidSpec": "solid",

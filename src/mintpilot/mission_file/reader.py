@@ -16,6 +16,7 @@ from pydantic import ValidationError
 
 from mintpilot.core.errors import MissionError
 from mintpilot.mission_file.form_checks import FormWords
+from mintpilot.mission_file.geodetic_places import with_local_places
 from mintpilot.mission_file.schema import MissionFile
 from mintpilot.mission_file.semantic_checks import contradictions
 from mintpilot.mission_file.yaml_places import Document, Fault, Path_, read_document
@@ -120,8 +121,11 @@ def _formed(document: Document) -> tuple[MissionFile | None, list[Fault]]:
     if "mintpilot" not in document.value:
         message = "'mintpilot' is missing; begin the file with 'mintpilot: 1', the version of its schema"
         return None, [Fault(path=(), line=1, message=message)]
+    value, faults = with_local_places(document.value)
+    if faults:
+        return None, faults
     try:
-        return MissionFile.model_validate(document.value), []
+        return MissionFile.model_validate(value), []
     except ValidationError as error:
         words = FormWords(document.value)
         found = error.errors(include_url=False)
