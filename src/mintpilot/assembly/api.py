@@ -147,6 +147,7 @@ def run_mission(
         strategy_arguments=_arguments(file, strategy, strategy_arguments),
         vehicle=_vehicle(vehicle),
         perception=perception or file.perception.use,
+        namers=tuple(file.perception.namers) if perception in (None, file.perception.use) else (),
     )
     with talk_for(file.language, llm=llm, lang=lang) as talk:
         world = build_world(file, base=folder, seed=seed, parse=talk.parse)

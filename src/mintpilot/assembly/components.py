@@ -9,6 +9,7 @@ from enum import StrEnum
 
 import numpy as np
 
+from mintpilot.assembly.perceiving import Seeing, make_perception, remarks_of
 from mintpilot.assembly.registry import load
 from mintpilot.assembly.strategies import Argument, make_objective, make_strategy, strategy_label
 from mintpilot.assembly.talk import Talk
@@ -53,6 +54,8 @@ class Choices:
     vehicle: VehicleChoice = VehicleChoice.MUJOCO
     planner: str = "grid"
     perception: str = "geometric"
+    namers: tuple[str, ...] = ()
+    """Who names what perception finds; empty: its own way."""
     camera_size: tuple[int, int] = (320, 240)
 
 
@@ -126,6 +129,7 @@ class _Components(AbstractContextManager[MissionComponents]):
     ) -> None:
         self._world, self._choices, self._operators, self._recorder = world, choices, operators, recorder
         self._talk, self._digests = talk, digests
+        self._perception: Perception | None = None
         self._stack = ExitStack()
 
     def __enter__(self) -> MissionComponents:
@@ -134,7 +138,9 @@ class _Components(AbstractContextManager[MissionComponents]):
         if choices.vehicle is VehicleChoice.MUJOCO and not world.is_map:
             simulator = MujocoSimulator(world.scene, world.rules, seed=world.seed, camera_size=choices.camera_size)
             self._stack.callback(simulator.close)
-            perception: Perception = load("perception", choices.perception)()
+            wanted = tuple(dict.fromkeys(g.reference.label for g in world.task.subgoals if g.reference.label))
+            perception = make_perception(Seeing(perception=choices.perception, namers=choices.namers, wanted=wanted))
+            self._perception = perception
             builder = map_builder(world)
             surveys = world.mission.survey is not None
             if surveys:
@@ -159,6 +165,10 @@ class _Components(AbstractContextManager[MissionComponents]):
     def __exit__(self, *_: object) -> None:
         self._stack.close()
 
+    def _remarks(self) -> tuple[str, ...]:
+        seen = () if self._perception is None else tuple(remarks_of(self._perception))
+        return (*self._talk.take_remarks(), *seen)
+
     def _made(
         self, simulator: MujocoSimulator | KinematicSimulator, source: MapSource, *, surveys: bool, watch_map: bool
     ) -> MissionComponents:
@@ -171,7 +181,7 @@ class _Components(AbstractContextManager[MissionComponents]):
             begin_task=simulator.begin_mission,
             judge=simulator,
             improve=self._talk.improve,
-            remarks=self._talk.take_remarks,
+            remarks=self._remarks,
             surveys=surveys,
             simulated=True,
             watch_map=watch_map,
