@@ -9,6 +9,7 @@ from enum import StrEnum
 
 import numpy as np
 
+from mintpilot.assembly.briefing import briefing_of
 from mintpilot.assembly.perceiving import Seeing, make_perception, remarks_of
 from mintpilot.assembly.registry import load
 from mintpilot.assembly.strategies import Argument, make_objective, make_strategy, strategy_label
@@ -57,6 +58,8 @@ class Choices:
     namers: tuple[str, ...] = ()
     """Who names what perception finds; empty: its own way."""
     camera_size: tuple[int, int] = (320, 240)
+    briefs: bool = False
+    """Whether go or no-go is asked before take-off. It always is where a language model read the instruction."""
 
 
 def deliberation_parts(world: World, choices: Choices, talk: Talk | None = None) -> DeliberationParts:
@@ -172,8 +175,12 @@ class _Components(AbstractContextManager[MissionComponents]):
     def _made(
         self, simulator: MujocoSimulator | KinematicSimulator, source: MapSource, *, surveys: bool, watch_map: bool
     ) -> MissionComponents:
+        parts = deliberation_parts(self._world, self._choices, self._talk)
+        briefed = self._choices.briefs or self._world.task.needs_confirmation
+        known = None if surveys else self._world.map
         return MissionComponents(
-            parts=deliberation_parts(self._world, self._choices, self._talk),
+            parts=parts,
+            briefing=briefing_of(parts, known, lang=self._talk.lang) if briefed else None,
             vehicle=simulator,
             map_source=source,
             operators=self._operators,
