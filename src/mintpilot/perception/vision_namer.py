@@ -91,15 +91,19 @@ class VisionNamer(Namer):
 
     def names(self, frame: Frame, segments: Sequence[Segment]) -> tuple[tuple[NameGuess, ...], ...]:
         """See `Namer.names`. Raises `DeviceError` when the model gives no usable answer in time."""
-        marked = sorted(range(len(segments)), key=lambda n: -int(segments[n].mask.sum()))[:MOST_MARKS]
-        marked.sort()
+        alike: dict[bytes, list[int]] = {}  # one mark for each mask: marks on top of each other cannot be read
+        for number, segment in enumerate(segments):
+            alike.setdefault(segment.mask.tobytes(), []).append(number)
+        groups = sorted(alike.values(), key=lambda group: -int(segments[group[0]].mask.sum()))[:MOST_MARKS]
+        groups.sort()
         found: list[tuple[NameGuess, ...]] = [()] * len(segments)
-        if not marked:
+        if not groups:
             return tuple(found)
-        answer = self._answer(marked_png(frame, [segments[n] for n in marked]), len(marked))
+        answer = self._answer(marked_png(frame, [segments[group[0]] for group in groups]), len(groups))
         if answer is not None:
-            for number, guesses in self._guesses(answer, len(marked)).items():
-                found[marked[number - 1]] = guesses
+            for number, guesses in self._guesses(answer, len(groups)).items():
+                for member in groups[number - 1]:
+                    found[member] = guesses
         return tuple(found)
 
     def _answer(self, picture: bytes, count: int) -> _Things | None:
