@@ -7,7 +7,7 @@ import math
 from mintpilot.core.gap import PASSABLE, KnowledgeGap
 from mintpilot.core.plan import Plan
 from mintpilot.core.ports import Ask, Decision, Situation
-from mintpilot.core.query import Literal, Query, Saying, SayingKind
+from mintpilot.core.query import Literal, Query, Saying, SayingKind, is_refused
 from mintpilot.core.tolerances import TOLERANCE
 from mintpilot.core.tree import Mint, ScoredQuery, StopReason
 from mintpilot.reasoning.safety import unknown_regions
@@ -77,4 +77,6 @@ def confirmations(passable: float, situation: Situation) -> int:
 def _may_ask(query: Query, situation: Situation) -> bool:
     """A query that was given up is not asked again, nor one that was answered by somebody who is never wrong."""
     answered = {one.query.id for one in situation.asked}
-    return query.id not in situation.withdrawn and (situation.settings.answer_error > 0 or query.id not in answered)
+    if is_refused(query, situation.withdrawn):
+        return False
+    return situation.settings.answer_error > 0 or query.id not in answered
