@@ -42,6 +42,7 @@ COMMANDS = (
     "bench export",
     "understand answer",
     "export",
+    "sim serve",
 )
 HEAD = """# The command line
 
