@@ -67,6 +67,7 @@ def told(situation: Situation, query: Query, answer: Answer | Reply, attempts: t
         belief=situation.belief,
         confirmed=situation.confirmed,
         withdrawn=situation.withdrawn,
+        unknown=situation.unknown,
         asked=situation.asked,
         attempts=attempts,
         silent=situation.silent,
@@ -78,6 +79,7 @@ def told(situation: Situation, query: Query, answer: Answer | Reply, attempts: t
         belief=after.belief,
         confirmed=after.confirmed,
         withdrawn=after.withdrawn,
+        unknown=after.unknown,
         asked=after.asked,
         silent=after.silent,
     )

@@ -21,6 +21,7 @@ from mintpilot.core.plan import Plan, PlanningProblem
 from mintpilot.core.query import Evidence, Query, Question, Reply
 from mintpilot.core.reading import AnsweredBy, Reading
 from mintpilot.core.trajectory import VehicleState
+from mintpilot.core.topics import Topic
 from mintpilot.core.tree import Certificate, Mint, ScoredQuery
 
 
@@ -200,6 +201,8 @@ class Situation:
     settings: AskingSettings
     metric: ImpactMetric
     objective: QueryObjective
+    unknown: frozenset[Topic] = frozenset()
+    """What the operator has said not to know: no query may turn on it."""
     proposer: Proposer | None = None
     """Whom a strategy may ask for queries that it does not find by itself; None: nobody."""
 

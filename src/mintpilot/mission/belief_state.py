@@ -9,6 +9,7 @@ from mintpilot.core.gap import PASSABLE, Belief, GapKind, KnowledgeGap
 from mintpilot.core.mission import AskingSettings
 from mintpilot.core.query import Answer, Evidence, Query, Reply
 from mintpilot.core.semantic_map import SemanticMap
+from mintpilot.core.topics import Topic, with_unknown
 from mintpilot.mission.extra_evidence import with_extra_evidence
 from mintpilot.reasoning.belief import condition
 
@@ -23,6 +24,8 @@ class BeliefState:
     """Obstacle gaps that got an explicit yes."""
     withdrawn: frozenset[str] = frozenset()
     """Queries that are not asked again: answered UNSURE, or contradicting twice."""
+    unknown: frozenset[Topic] = frozenset()
+    """What the operator has said not to know."""
     asked: tuple[Evidence, ...] = ()
     """Queries that were answered, with the answer, oldest first."""
     attempts: tuple[str, ...] = ()
@@ -50,7 +53,8 @@ def update(state: BeliefState, query: Query, answer: Answer, settings: AskingSet
     if answer.reply is Reply.TIMEOUT:
         return AnswerUpdate(state=replace(state, silent=True))
     if answer.part is None:
-        return AnswerUpdate(state=replace(state, withdrawn=state.withdrawn | {query.id}))
+        unknown = with_unknown(state.unknown, query)
+        return AnswerUpdate(state=replace(state, withdrawn=state.withdrawn | {query.id}, unknown=unknown))
     after = condition(state.belief, query, answer.part, settings.answer_error, max_joint=settings.max_joint)
     if after.contradiction:
         given_up = frozenset({query.id}) if state.attempts.count(query.id) > 1 else frozenset[str]()

@@ -9,8 +9,9 @@ import numpy as np
 from mintpilot.core.gap import Belief
 from mintpilot.core.mission import AskingSettings
 from mintpilot.core.plan import Plan
+from mintpilot.core.tolerances import TOLERANCE
 from mintpilot.core.tree import Certificate, Mint, StopReason
-from mintpilot.reasoning.classes import cheapest_under, class_entropy_bits
+from mintpilot.reasoning.classes import cheapest_under, class_entropy_bits, demands
 from mintpilot.reasoning.situation import may_fail, succeeds
 
 _BECAUSE: Final = {
@@ -39,6 +40,24 @@ def bound_s(plan: Plan | None, mint: Mint, belief: Belief, settings: AskingSetti
     return float(max(0.0, (plan.cost_s - lowest[np.isfinite(lowest)]).max(initial=0.0)))
 
 
+def mass_outside(plan: Plan | None, mint: Mint, belief: Belief, settings: AskingSettings) -> float:
+    """Probability that a plan fails or costs more than ``delta_c_s`` above the best one, 0 to 1.
+
+    Of gaps that the tree does not hold, those that the plan depends on count as independent of the tree's.
+    """
+    lowest = cheapest_under(mint)
+    p = mint.belief.probability
+    if plan is None:
+        return float(p[np.isfinite(lowest)].sum())
+    fine = succeeds(plan, mint.belief) & (plan.cost_s <= lowest + settings.delta_c_s + TOLERANCE)
+    held = float(p[fine].sum())
+    axes = {gap.id for gap in mint.belief.gaps}
+    for gap, value in demands(plan).items():
+        if gap not in axes and any(g.id == gap for g in belief.gaps):
+            held *= belief.probability_of(gap, value)
+    return min(1.0, max(0.0, 1.0 - held))
+
+
 def certify(
     reason: StopReason,
     plan: Plan | None,
@@ -51,6 +70,9 @@ def certify(
     """The certificate for flying that plan (None: for staying safe) and asking no more."""
     top = mint.classes[0].probability
     bound = bound_s(plan, mint, belief, settings)
+    outside = mass_outside(plan, mint, belief, settings)
+    if reason is StopReason.GOOD_FOR_ALL:
+        assert bound <= settings.delta_c_s + TOLERANCE, f"a plan that is good for all may lose {bound} s"
     because = _BECAUSE[reason].format(top=top, gain=best_gain_bits, budget=settings.max_questions)
     return Certificate(
         reason=reason,
@@ -58,13 +80,18 @@ def certify(
         entropy_bits=class_entropy_bits(mint),
         best_gain_bits=best_gain_bits,
         bound_s=bound,
-        text=f"{because} {_consequence(plan, bound)}",
+        text=f"{because} {_consequence(plan, bound, outside, settings)}",
+        outside=outside,
     )
 
 
-def _consequence(plan: Plan | None, bound: float) -> str:
+def _consequence(plan: Plan | None, bound: float, outside: float, settings: AskingSettings) -> str:
     if plan is None:
         return "No safe plan is left to fly."
     if np.isinf(bound):
-        return f"The plan of {plan.cost_s:.1f} s is the best that is safe, but it may not succeed."
-    return f"No further answer would change the flight of {plan.cost_s:.1f} s by more than {bound:.1f} s."
+        said = f"The plan of {plan.cost_s:.1f} s is the best that is safe, but it may not succeed"
+    else:
+        said = f"No further answer would change the flight of {plan.cost_s:.1f} s by more than {bound:.1f} s"
+    if outside <= settings.floor:
+        return f"{said}."
+    return f"{said}; with {outside:.1%} probability it loses more than {settings.delta_c_s:.1f} s."

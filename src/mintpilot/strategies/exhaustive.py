@@ -8,6 +8,7 @@ from mintpilot.core.gap import PASSABLE, GapKind, KnowledgeGap
 from mintpilot.core.ports import Ask, Decision, Situation, Strategy
 from mintpilot.core.query import Query
 from mintpilot.core.tolerances import DECIMALS, TOLERANCE
+from mintpilot.core.topics import turns_on
 from mintpilot.core.tree import Mint, ScoredQuery, StopReason
 from mintpilot.elicitation.candidates import gap_literals
 from mintpilot.elicitation.objectives.channel import noise_bits
@@ -41,7 +42,7 @@ def best_about(gap: KnowledgeGap, situation: Situation) -> ScoredQuery | None:
     answered = {one.query.id for one in situation.asked} if situation.settings.answer_error == 0 else set()
     found = []
     for query in queries:
-        if query.id in situation.withdrawn or query.id in answered:
+        if query.id in situation.withdrawn or query.id in answered or turns_on(query, situation.unknown):
             continue
         scored = scored_alone(query, gap, situation)
         # A region that is surely passable still needs its explicit yes.

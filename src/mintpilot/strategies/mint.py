@@ -14,8 +14,9 @@ from mintpilot.core.tolerances import TOLERANCE
 from mintpilot.core.tree import LeafReason, Mint, ScoredQuery, StopReason
 from mintpilot.elicitation.candidates import candidate_queries
 from mintpilot.elicitation.choose import choose
+from mintpilot.reasoning.certificate import bound_s
 from mintpilot.reasoning.situation import plans_of, regret_matrix
-from mintpilot.strategies.confirming import confirm_or_avoid
+from mintpilot.strategies.confirming import confirm_certain, confirm_or_avoid
 from mintpilot.strategies.flying import (
     answerable,
     best_safe_plan,
@@ -47,7 +48,8 @@ class MintStrategy(Strategy):
         1. One plan class is left or holds enough of the mass, or one plan is good for all: fly it. If it enters a
            region that is not known to be passable, ask about that one or avoid it, whichever is cheaper on average.
         2. The operator is silent: fly the cautious plan.
-        3. The budget is spent, or no query is worth asking: fly the safe plan that loses least on average.
+        3. A plan that is better on average lacks but a yes for regions that are certain by inference: ask for it.
+        4. The budget is spent, or no query is worth asking: fly the safe plan that loses least on average.
 
         A proposer (a language model), where there is one, is asked for queries only when the best of our own falls
         short of what any query could gain (`mintpilot.strategies.proposals.with_proposals`); the best by score wins.
@@ -73,6 +75,9 @@ class MintStrategy(Strategy):
             return fly(situation, mint, plan, StopReason.BUDGET, best_gain_bits=gain)
         if not ranked or ranked[0].score <= 0:
             plan = best_safe_plan(situation, mint)
+            missing = confirm_certain(situation, mint, plan)
+            if missing is not None:
+                return missing
             return replace(fly(situation, mint, plan, StopReason.NO_GAIN, best_gain_bits=gain), proposed=proposed)
         return Ask(
             scored=ranked[0],
@@ -96,7 +101,8 @@ def _settled(situation: Situation, mint: Mint) -> tuple[Plan, StopReason] | None
     if root.leaf is LeafReason.RELIES_ON_NOTHING and root.plan is not None:
         return root.plan, StopReason.ONE_CLASS if situation.asked else StopReason.NO_GAPS
     if root.leaf is LeafReason.CAUTIOUS_IS_GOOD_ENOUGH and root.plan is not None:
-        return root.plan, StopReason.GOOD_FOR_ALL
+        sure = bound_s(root.plan, mint, situation.belief, situation.settings) <= situation.settings.delta_c_s + TOLERANCE
+        return root.plan, StopReason.GOOD_FOR_ALL if sure else StopReason.ONE_CLASS
     if top.plan is not None and (
         root.leaf is LeafReason.TARGET_IS_CLEAR_ENOUGH or top.probability >= 1 - situation.settings.alpha - TOLERANCE
     ):
@@ -109,11 +115,12 @@ def _good_for_all(situation: Situation, mint: Mint) -> Plan | None:
     """The cheapest plan within delta_c of the best under all that is left (paper's rule: and within delta_d)."""
     settings = situation.settings
     worst = regret_matrix(mint, settings).max(axis=1, initial=0.0)
-    plans = plans_of(mint)
-    good = [plans[i] for i in np.flatnonzero(worst <= settings.delta_c_s + TOLERANCE)]
-    for plan in sorted((p for p in good if p is not None), key=lambda p: (p.cost_s, p.signature)):
-        near = settings.rule is CriticalityRule.REGRET or _near_all(situation, mint, plan)
-        if near and may_be_flown(situation, plan):
+    plans, limit_s = plans_of(mint), settings.delta_c_s + TOLERANCE
+    good = [plans[i] for i in np.flatnonzero(worst <= limit_s)]
+    found = [p for p in good if p is not None and bound_s(p, mint, situation.belief, settings) <= limit_s]
+    # A plan whose regions are certain without an explicit yes comes last: it costs a question.
+    for plan in sorted(found, key=lambda p: (not may_be_flown(situation, p), p.cost_s, p.signature)):
+        if settings.rule is CriticalityRule.REGRET or _near_all(situation, mint, plan):
             return plan
     return None
 
