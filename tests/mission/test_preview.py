@@ -1,6 +1,5 @@
-"""A preview is bounded in work and in time, and says so."""
+"""A preview is bounded in work, and says how its figure was found."""
 
-import itertools
 from pathlib import Path
 
 from mintpilot.assembly.components import Choices, deliberation_parts
@@ -10,24 +9,20 @@ from mintpilot.mission.preview import preview
 from .scenes import hall
 
 
-def previewed(**bounds: object):
+def previewed(**bounds: int):
     world = build_world(hall(), base=Path(), seed=0)
     parts = deliberation_parts(world, Choices())
     return preview(world.map, parts, **bounds)
 
 
-def test_all_histories_of_answers_are_followed_when_there_is_time():
-    seen = previewed(clock=lambda: 0.0)
-    assert seen.complete
+def test_all_histories_of_answers_are_followed_where_they_are_few():
+    seen = previewed()
+    assert (seen.complete, seen.histories, seen.standard_error) == (True, 0, 0.0)
     assert seen.expected_questions == 1.0
 
 
-def test_when_the_time_is_over_the_mean_is_a_lower_bound():
-    seconds = itertools.count(step=60.0)
-    seen = previewed(clock=lambda: next(seconds))
-    assert not seen.complete
+def test_where_they_are_too_many_the_mean_is_estimated_from_drawn_ones():
+    seen = previewed(max_deliberations=0, histories=5)
+    assert (seen.complete, seen.histories) == (False, 5)
     assert seen.expected_questions == 1.0
-
-
-def test_no_more_is_deliberated_than_allowed():
-    assert not previewed(max_deliberations=0).complete
+    assert seen.standard_error == 0.0

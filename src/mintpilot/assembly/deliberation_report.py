@@ -106,7 +106,9 @@ class DeliberationReport(_Report):
     expected_questions: float
     """Mean over the answers."""
     expected_questions_complete: bool
-    """False: a lower bound, since the work was bounded."""
+    """True: exact. False: an estimate from histories of answers that were drawn, since there are too many."""
+    expected_questions_method: str
+    """How the figure was found, in words."""
     stop_reason: str | None
     """Why nothing is asked, where nothing is; else null."""
     certificate: str
@@ -150,12 +152,19 @@ def deliberation_report(
         query=_query(decision, question) if isinstance(decision, Ask) and question is not None else None,
         expected_questions=preview.expected_questions,
         expected_questions_complete=preview.complete,
+        expected_questions_method=_method(preview),
         stop_reason=str(fly.certificate.reason) if fly else None,
         certificate=fly.certificate.text if fly else "",
         plan_cost_s=fly.plan.cost_s if fly and fly.plan else None,
         left_out=list(preview.first.left_out),
         seconds=seconds,
     )
+
+
+def _method(preview: Preview) -> str:
+    if preview.complete:
+        return "exact: every history of answers was followed"
+    return f"mean of {preview.histories} drawn histories of answers, standard error {preview.standard_error:.2f}"
 
 
 def steps_report(task: Task) -> list[StepReport]:

@@ -6,12 +6,28 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from mintpilot.core.gap import PASSABLE, Belief, GapKind, KnowledgeGap
+from mintpilot.core.geometry import Ints, frozen
 from mintpilot.core.mission import AskingSettings
 from mintpilot.core.query import Answer, Evidence, Query, Reply
 from mintpilot.core.semantic_map import SemanticMap
 from mintpilot.core.topics import Topic, with_unknown
 from mintpilot.mission.extra_evidence import with_extra_evidence
 from mintpilot.reasoning.belief import condition
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Grant:
+    """An explicit yes for a region: it covers what was shown, for as long as answers count (method, section 12)."""
+
+    gap: str
+    """Id of the obstacle gap."""
+    cells: Ints
+    """Flat indices (n,) of the region's cells as it was shown when the question was put."""
+    given_s: float
+    """When the answer came, mission clock."""
+
+    def __post_init__(self) -> None:
+        frozen(self.cells)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -22,6 +38,8 @@ class BeliefState:
     belief: Belief
     confirmed: frozenset[str] = frozenset()
     """Obstacle gaps that got an explicit yes."""
+    grants: tuple[Grant, ...] = ()
+    """Of each of these: the outline that was shown, and when the yes came; sorted by gap, none twice."""
     withdrawn: frozenset[str] = frozenset()
     """Queries that are not asked again: answered UNSURE, or contradicting twice."""
     unknown: frozenset[Topic] = frozenset()
