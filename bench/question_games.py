@@ -83,7 +83,6 @@ def answered(situation: Situation, query: Query, part: int) -> Situation:
         belief=situation.belief,
         confirmed=situation.confirmed,
         withdrawn=situation.withdrawn,
-        unknown=situation.unknown,
         asked=situation.asked,
     )
     after = update(before, query, answer_for(query, part), situation.settings).state

@@ -67,7 +67,6 @@ def told(situation: Situation, query: Query, answer: Answer | Reply, attempts: t
         belief=situation.belief,
         confirmed=situation.confirmed,
         withdrawn=situation.withdrawn,
-        unknown=situation.unknown,
         asked=situation.asked,
         attempts=attempts,
         silent=situation.silent,
@@ -79,9 +78,9 @@ def told(situation: Situation, query: Query, answer: Answer | Reply, attempts: t
         belief=after.belief,
         confirmed=after.confirmed,
         withdrawn=after.withdrawn,
-        unknown=after.unknown,
         asked=after.asked,
         silent=after.silent,
+        settings=replace(situation.settings, max_questions=max(0, situation.settings.max_questions - 1)),
     )
 
 

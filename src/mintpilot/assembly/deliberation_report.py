@@ -105,10 +105,10 @@ class DeliberationReport(_Report):
     """Null when nothing needs to be asked."""
     expected_questions: float
     """Mean over the answers."""
-    expected_questions_complete: bool
-    """True: exact. False: an estimate from histories of answers that were drawn, since there are too many."""
-    expected_questions_method: str
-    """How the figure was found, in words."""
+    expected_questions_played: int
+    """0: the mean is exact. Else it is over so many histories of answers, drawn from the belief."""
+    expected_questions_error: float
+    """Standard error of a played mean."""
     stop_reason: str | None
     """Why nothing is asked, where nothing is; else null."""
     certificate: str
@@ -151,20 +151,14 @@ def deliberation_report(
         plan_classes=_classes(decision.mint),
         query=_query(decision, question) if isinstance(decision, Ask) and question is not None else None,
         expected_questions=preview.expected_questions,
-        expected_questions_complete=preview.complete,
-        expected_questions_method=_method(preview),
+        expected_questions_played=preview.played,
+        expected_questions_error=preview.error,
         stop_reason=str(fly.certificate.reason) if fly else None,
         certificate=fly.certificate.text if fly else "",
         plan_cost_s=fly.plan.cost_s if fly and fly.plan else None,
         left_out=list(preview.first.left_out),
         seconds=seconds,
     )
-
-
-def _method(preview: Preview) -> str:
-    if preview.complete:
-        return "exact: every history of answers was followed"
-    return f"mean of {preview.histories} drawn histories of answers, standard error {preview.standard_error:.2f}"
 
 
 def steps_report(task: Task) -> list[StepReport]:

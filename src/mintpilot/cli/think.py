@@ -54,9 +54,11 @@ def lines_of(report: DeliberationReport) -> Iterator[str]:
             yield f"  {plan.probability:6.1%}  {cost}, in {_count(len(plan.hypotheses), 'case')}"
     yield ""
     yield from _decision_lines(report)
+    played = report.expected_questions_played
+    bound = "" if not played else f" (± {report.expected_questions_error:.2f}, over {played} played missions)"
     for note in report.left_out:
         yield f"A bound on the work was reached: {note}."
-    yield f"Questions to be expected: {report.expected_questions:.2f} ({report.expected_questions_method}). Thought for {report.seconds:.2f} s."
+    yield f"Questions to be expected: {report.expected_questions:.2f}{bound}. Thought for {report.seconds:.2f} s."
 
 
 def _gap_lines(gap: GapReport) -> Iterator[str]:

@@ -21,7 +21,6 @@ from mintpilot.core.plan import Plan, PlanningProblem
 from mintpilot.core.query import Evidence, Query, Question, Reply
 from mintpilot.core.reading import AnsweredBy, Reading
 from mintpilot.core.trajectory import VehicleState
-from mintpilot.core.topics import Topic
 from mintpilot.core.tree import Certificate, Mint, ScoredQuery
 
 
@@ -44,6 +43,17 @@ class Namer(Protocol):
 
         What is missing to 1 is for none of them. A namer that knows nothing of a segment gives no name for it. Raises
         `DeviceError` when a model or its server fails.
+        """
+        ...
+
+
+class VisionModel(Protocol):
+    """Answers in words what a picture shows. What it says is a suggestion: geometry comes from depth alone."""
+
+    def look(self, prompt: str, picture_png: bytes, *, schema: type, timeout_s: float) -> str:
+        """The model's answer, JSON of that pydantic schema where it keeps to it; the caller checks it.
+
+        Raises `DeviceError` when there is no answer in time.
         """
         ...
 
@@ -193,16 +203,15 @@ class Situation:
     confirmed: frozenset[str]
     """Ids of obstacle gaps that got an explicit yes."""
     withdrawn: frozenset[str]
-    """Ids of queries answered UNSURE: not to be asked again."""
+    """What is not to be asked again: see `mintpilot.core.query.is_refused`."""
     asked: tuple[Evidence, ...]
     """Queries that were answered, with the answer, oldest first."""
     silent: bool
     """True after a time-out: no more questions."""
     settings: AskingSettings
+    """Its ``max_questions`` is what is left of the budget."""
     metric: ImpactMetric
     objective: QueryObjective
-    unknown: frozenset[Topic] = frozenset()
-    """What the operator has said not to know: no query may turn on it."""
     proposer: Proposer | None = None
     """Whom a strategy may ask for queries that it does not find by itself; None: nobody."""
 

@@ -149,9 +149,9 @@ class Certificate:
     """Largest cost of the chosen plan above the best one, over the hypotheses still above the floor, seconds; infinite
     where the chosen plan may fail or nothing is flown though something might have been."""
     text: str
-    """The same in plain sentences."""
-    outside: float = 0.0
-    """Probability that the chosen plan does not succeed, or costs more than ``delta_c_s`` above the best one."""
+    """The same in one plain sentence."""
+    mass_outside: float = 0.0
+    """Probability that the chosen plan fails, or is dearer than the best one by more than ``delta_c_s``."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -57,7 +57,7 @@ def shown(t: Transition, event: QuestionShown) -> None:
     """Somebody has the question in front of them."""
     open_ = t.state.question
     if open_ is not None and open_.question.id == event.question and open_.shown_s is None:
-        deadline_s = event.time_s + t.state.setup.mission.asking.patience_s
+        deadline_s = event.time_s + (open_.deadline_s - open_.asked_s)
         t.set(question=replace(open_, shown_s=event.time_s, deadline_s=deadline_s))
 
 
@@ -66,6 +66,8 @@ def reworded(t: Transition, event: QuestionReworded) -> None:
     open_ = t.state.question
     if open_ is None or open_.question.id != event.question or open_.question.text == event.text:
         return
+    if t.state.grounded:
+        return  # a briefing says what was understood, in the words of the steps
     question = replace(open_.question, text=event.text, worded_by=event.worded_by)
     first = open_.first_text or open_.question.text
     t.set(question=replace(open_, question=question, first_text=first, reworded_s=event.seconds))
@@ -158,7 +160,7 @@ def _learn(t: Transition, open_: OpenQuestion, answer: Answer) -> None:
     query, text, before = open_.question.query, open_.question.text, t.beliefs
     result = update(before, query, answer, t.state.setup.mission.asking)
     after = result.state
-    if answer.part is not None and not result.contradiction:
+    if answer.part is not None and open_.shown_map is not None and not result.contradiction:
         yes = confirmed_by(query, answer.part, before.belief.gaps)
         after = granted(after, yes, open_.shown_map, t.state.clock_s)
     t.set(beliefs=after, learnt=answer)

@@ -191,7 +191,6 @@ def _deliberate(
         belief=belief,
         confirmed=state.confirmed,
         withdrawn=state.withdrawn,
-        unknown=state.unknown,
         asked=state.asked,
         silent=state.silent,
         settings=remaining_budget(parts.settings, state),

@@ -7,6 +7,7 @@ from enum import StrEnum
 
 import numpy as np
 
+from mintpilot.core.briefing import Briefing
 from mintpilot.core.geometry import Floats
 from mintpilot.core.inputs import Link
 from mintpilot.core.mission import Mission, Outcome, Verdict
@@ -69,6 +70,8 @@ class Setup:
     """True where the first map is made by a survey flight."""
     simulated: bool = False
     """True in a simulator only: baselines may then fly what is not known to be passable."""
+    briefing: Briefing | None = None
+    """What is shown before take-off and must be answered with an explicit yes; None: it takes off at once."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -89,11 +92,11 @@ class OpenQuestion:
     question: Question
     scored: ScoredQuery
     asked_s: float
-    shown_map: SemanticMap
-    """What it speaks of: a yes for a region covers the outline that it has here."""
     deadline_s: float
     """When it counts as unanswered, mission clock."""
     shown_s: float | None = None
+    shown_map: SemanticMap | None = None
+    """What it speaks of: a yes for a region covers the outline that it has here. None: it speaks of no region."""
     first_text: str = ""
     """The words that were there first, where better ones followed; else empty."""
     read_backs: int = 0
@@ -147,6 +150,8 @@ class MissionState:
     """Index of the leg that is flown, or prepared."""
     assume_passable: frozenset[str] = frozenset()
     motion: OngoingMotion | None = None
+    grounded: bool = False
+    """True until the briefing was answered with yes: nothing moves."""
     question: OpenQuestion | None = None
     learnt: Answer | None = None
     """The answer that was learnt from last, as it counted."""

@@ -10,7 +10,6 @@ import numpy as np
 from mintpilot.core.plan import Plan
 from mintpilot.core.ports import Fly, Situation
 from mintpilot.core.query import Query
-from mintpilot.core.topics import turns_on
 from mintpilot.core.tree import Mint, StopReason
 from mintpilot.reasoning.certificate import certify
 from mintpilot.reasoning.classes import demands
@@ -82,22 +81,18 @@ def fly_cautiously(situation: Situation, mint: Mint, reason: StopReason) -> Fly:
 
 
 def answerable(queries: Iterable[Query], situation: Situation) -> tuple[Query, ...]:
-    """The queries that the operator may know of, and whose answers the belief can take in.
-
-    Those couple at most ``settings.max_joint`` joint values.
-    """
+    """The queries whose answers the belief can take in: they couple at most ``settings.max_joint`` joint values."""
     factors = {gap.id: number for number, factor in enumerate(situation.belief.factors) for gap in factor.gaps}
     sizes = [factor.probability.size for factor in situation.belief.factors]
 
     def coupled(query: Query) -> int:
         return math.prod(sizes[number] for number in {factors[name] for name in query.gap_ids})
 
-    known = (query for query in queries if not turns_on(query, situation.unknown))
-    return tuple(query for query in known if coupled(query) <= situation.settings.max_joint)
+    return tuple(query for query in queries if coupled(query) <= situation.settings.max_joint)
 
 
 def questions_left(situation: Situation) -> int:
     """How many more questions the budget allows; 0 once the operator is silent."""
     if situation.silent:
         return 0
-    return max(0, situation.settings.max_questions - len(situation.asked) - len(situation.withdrawn))
+    return situation.settings.max_questions

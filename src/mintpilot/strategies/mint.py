@@ -9,17 +9,17 @@ import numpy as np
 from mintpilot.core.geometry import Floats
 from mintpilot.core.mission import CriticalityRule
 from mintpilot.core.plan import Plan
-from mintpilot.core.ports import Ask, Decision, QueryObjective, Situation, Strategy
+from mintpilot.core.ports import Ask, Decision, Fly, QueryObjective, Situation, Strategy
 from mintpilot.core.tolerances import TOLERANCE
 from mintpilot.core.tree import LeafReason, Mint, ScoredQuery, StopReason
 from mintpilot.elicitation.candidates import candidate_queries
 from mintpilot.elicitation.choose import choose
-from mintpilot.reasoning.certificate import bound_s
 from mintpilot.reasoning.situation import plans_of, regret_matrix
-from mintpilot.strategies.confirming import confirm_certain, confirm_or_avoid
+from mintpilot.strategies.confirming import confirm_or_avoid
 from mintpilot.strategies.flying import (
     answerable,
     best_safe_plan,
+    expected_cost_s,
     fly,
     fly_cautiously,
     may_be_flown,
@@ -48,8 +48,7 @@ class MintStrategy(Strategy):
         1. One plan class is left or holds enough of the mass, or one plan is good for all: fly it. If it enters a
            region that is not known to be passable, ask about that one or avoid it, whichever is cheaper on average.
         2. The operator is silent: fly the cautious plan.
-        3. A plan that is better on average lacks but a yes for regions that are certain by inference: ask for it.
-        4. The budget is spent, or no query is worth asking: fly the safe plan that loses least on average.
+        3. The budget is spent, or no query is worth asking: fly the safe plan that loses least on average.
 
         A proposer (a language model), where there is one, is asked for queries only when the best of our own falls
         short of what any query could gain (`mintpilot.strategies.proposals.with_proposals`); the best by score wins.
@@ -74,11 +73,7 @@ class MintStrategy(Strategy):
             plan = best_safe_plan(situation, mint)
             return fly(situation, mint, plan, StopReason.BUDGET, best_gain_bits=gain)
         if not ranked or ranked[0].score <= 0:
-            plan = best_safe_plan(situation, mint)
-            missing = confirm_certain(situation, mint, plan)
-            if missing is not None:
-                return missing
-            return replace(fly(situation, mint, plan, StopReason.NO_GAIN, best_gain_bits=gain), proposed=proposed)
+            return replace(_without_gain(situation, mint, gain), proposed=proposed)
         return Ask(
             scored=ranked[0],
             alternatives=ranked[1 : 1 + ALTERNATIVES],
@@ -86,6 +81,24 @@ class MintStrategy(Strategy):
             proposed=proposed,
             bound_bits=bound_bits,
         )
+
+
+def _without_gain(situation: Situation, mint: Mint, gain: float) -> Ask | Fly:
+    """No query divides the plan classes: the safe plan that loses least, unless a missing yes makes a better one.
+
+    A region that is certain by inference but has no explicit yes is asked about when the plan needs it (method, section
+    6), never a reason to give up.
+    """
+    safe = best_safe_plan(situation, mint)
+    plans = [c.plan for c in mint.classes if c.plan is not None]
+    best = min(plans, key=lambda p: (expected_cost_s(situation, mint, p), p.cost_s, p.signature), default=None)
+    if best is not None and not may_be_flown(situation, best):
+        stays_s = situation.settings.failure_price_s if safe is None else expected_cost_s(situation, mint, safe)
+        if stays_s - expected_cost_s(situation, mint, best) > situation.settings.delta_c_s + TOLERANCE:
+            decision = confirm_or_avoid(situation, mint, best, StopReason.NO_GAIN)
+            if isinstance(decision, Ask):
+                return decision
+    return fly(situation, mint, safe, StopReason.NO_GAIN, best_gain_bits=gain)
 
 
 def _rank(situation: Situation, mint: Mint, regret_s: Floats, objective: QueryObjective) -> tuple[ScoredQuery, ...]:
@@ -101,8 +114,7 @@ def _settled(situation: Situation, mint: Mint) -> tuple[Plan, StopReason] | None
     if root.leaf is LeafReason.RELIES_ON_NOTHING and root.plan is not None:
         return root.plan, StopReason.ONE_CLASS if situation.asked else StopReason.NO_GAPS
     if root.leaf is LeafReason.CAUTIOUS_IS_GOOD_ENOUGH and root.plan is not None:
-        sure = bound_s(root.plan, mint, situation.belief, situation.settings) <= situation.settings.delta_c_s + TOLERANCE
-        return root.plan, StopReason.GOOD_FOR_ALL if sure else StopReason.ONE_CLASS
+        return root.plan, StopReason.GOOD_FOR_ALL
     if top.plan is not None and (
         root.leaf is LeafReason.TARGET_IS_CLEAR_ENOUGH or top.probability >= 1 - situation.settings.alpha - TOLERANCE
     ):
@@ -115,12 +127,11 @@ def _good_for_all(situation: Situation, mint: Mint) -> Plan | None:
     """The cheapest plan within delta_c of the best under all that is left (paper's rule: and within delta_d)."""
     settings = situation.settings
     worst = regret_matrix(mint, settings).max(axis=1, initial=0.0)
-    plans, limit_s = plans_of(mint), settings.delta_c_s + TOLERANCE
-    good = [plans[i] for i in np.flatnonzero(worst <= limit_s)]
-    found = [p for p in good if p is not None and bound_s(p, mint, situation.belief, settings) <= limit_s]
-    # A plan whose regions are certain without an explicit yes comes last: it costs a question.
-    for plan in sorted(found, key=lambda p: (not may_be_flown(situation, p), p.cost_s, p.signature)):
-        if settings.rule is CriticalityRule.REGRET or _near_all(situation, mint, plan):
+    plans = plans_of(mint)
+    good = [plans[i] for i in np.flatnonzero(worst <= settings.delta_c_s + TOLERANCE)]
+    for plan in sorted((p for p in good if p is not None), key=lambda p: (p.cost_s, p.signature)):
+        near = settings.rule is CriticalityRule.REGRET or _near_all(situation, mint, plan)
+        if near and may_be_flown(situation, plan):
             return plan
     return None
 
