@@ -37,6 +37,7 @@ COMMANDS = (
     "bench boxes",
     "bench gaps",
     "bench language",
+    "bench trust",
     "bench report",
     "bench export",
     "understand answer",
