@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from contextlib import AbstractContextManager, ExitStack
 from dataclasses import dataclass, field
 from enum import StrEnum
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -19,16 +20,17 @@ from mintpilot.core.ports import Operator, Perception, Recorder
 from mintpilot.core.semantic_map import SemanticMap
 from mintpilot.core.task import Action
 from mintpilot.elicitation.wording import word_question
-from mintpilot.interaction.scripted import ScriptedOperator
-from mintpilot.mapping.builder import MapBuilder
 from mintpilot.mission.components import MissionComponents
 from mintpilot.mission.deliberation import DeliberationParts
 from mintpilot.mission.map_source import CameraMapSource, GivenMap, MapSource
 from mintpilot.mission_file.schema import OperatorSpec
-from mintpilot.simulation.kinematic import KinematicSimulator
-from mintpilot.simulation.mujoco_vehicle import MujocoSimulator
-from mintpilot.simulation.scene_map_source import SceneMapSource
 from mintpilot.uncertainty.keep_away import with_keep_away
+
+if TYPE_CHECKING:
+    from mintpilot.interaction.scripted import ScriptedOperator
+    from mintpilot.mapping.builder import MapBuilder
+    from mintpilot.simulation.kinematic import KinematicSimulator
+    from mintpilot.simulation.mujoco_vehicle import MujocoSimulator
 
 TAKE_OFF_CLEAR_M = 1.0
 """Free space around the hover point that whoever puts the drone down vouches for, metres."""
@@ -79,6 +81,8 @@ def deliberation_parts(world: World, choices: Choices, talk: Talk | None = None)
 
 def scripted_operator(world: World, spec: OperatorSpec) -> ScriptedOperator:
     """An operator that knows the truth of the world."""
+    from mintpilot.interaction.scripted import ScriptedOperator
+
     return ScriptedOperator(
         world.truth,
         rng=np.random.default_rng([world.seed, 7]),
@@ -132,6 +136,8 @@ class _Components(AbstractContextManager[MissionComponents]):
         world, choices = self._world, self._choices
         self._stack.callback(self._talk.close)
         if choices.vehicle is VehicleChoice.MUJOCO and not world.is_map:
+            from mintpilot.simulation.mujoco_vehicle import MujocoSimulator
+
             simulator = MujocoSimulator(world.scene, world.rules, seed=world.seed, camera_size=choices.camera_size)
             self._stack.callback(simulator.close)
             perception: Perception = load("perception", choices.perception)()
@@ -149,6 +155,9 @@ class _Components(AbstractContextManager[MissionComponents]):
                 f"'photograph {photographs[0].reference.phrase}' cannot be done: this vehicle has no camera. "
                 "Fly with one that has, or leave the picture out."
             )
+        from mintpilot.simulation.kinematic import KinematicSimulator
+        from mintpilot.simulation.scene_map_source import SceneMapSource
+
         kinematic = KinematicSimulator(world.scene, world.rules, seed=world.seed)
         given: MapSource = GivenMap(world.map)
         if not world.is_map:
@@ -213,6 +222,8 @@ class KeepAwayMapSource(MapSource):
 
 def map_builder(world: World) -> MapBuilder:
     """A builder on the lattice of the world's map."""
+    from mintpilot.mapping.builder import MapBuilder
+
     mission = world.mission
     frame: GridFrame = world.map.frame
     return MapBuilder(
