@@ -133,6 +133,9 @@ class _Components(AbstractContextManager[MissionComponents]):
         self._stack = ExitStack()
 
     def __enter__(self) -> MissionComponents:
+        from mintpilot.planning.warm import warm_up
+
+        warm_up()
         world, choices = self._world, self._choices
         self._stack.callback(self._talk.close)
         if choices.vehicle is VehicleChoice.MUJOCO and not world.is_map:

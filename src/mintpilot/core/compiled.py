@@ -44,7 +44,7 @@ class Compiled:
         options: those of ``numba.njit``.
     """
 
-    def __init__(self, function: Callable[..., Any], **options: str | bool) -> None:
+    def __init__(self, function: Callable[..., Any], **options: Any) -> None:
         functools.update_wrapper(self, function)
         self._options = options
 
