@@ -13,5 +13,5 @@ def test_the_public_names_are_sorted_complete_and_documented() -> None:
     loaded = {name for name in vars(room) if not name.startswith("_")} - modules
     assert loaded <= set(room.__all__)
     assert all(getattr(room, name).__doc__ for name in room.__all__)
-    with pytest.raises(AttributeError, match="it offers .*read_answer"):
+    with pytest.raises(AttributeError, match=r"it offers .*read_answer"):
         room.read_anser  # noqa: B018
