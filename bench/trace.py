@@ -41,10 +41,10 @@ class LineTrace:
         sys.settrace(None)
         threading.settrace(None)  # type: ignore[arg-type]
 
-    def _enter(self, frame: FrameType, event: str, argument: Any) -> Any:
+    def _enter(self, frame: FrameType, _event: str, _argument: Any) -> Any:
         return self._line if frame.f_code.co_filename.startswith(self._root) else None
 
-    def _line(self, frame: FrameType, event: str, argument: Any) -> Any:
+    def _line(self, frame: FrameType, event: str, _argument: Any) -> Any:
         if event == "line":
             self.lines[frame.f_code.co_filename].add(frame.f_lineno)
         return self._line
@@ -105,7 +105,9 @@ def main() -> None:
     passed = trace(args.mission)
     for name, (ran, whole) in passed.items():
         print(f"{ran:5} of {whole:4}  {name}")
-    print(f"{len(passed)} files, {sum(r for r, _ in passed.values())} lines ran of {sum(w for _, w in passed.values())}")
+    print(
+        f"{len(passed)} files, {sum(r for r, _ in passed.values())} lines ran of {sum(w for _, w in passed.values())}"
+    )
     if args.keep:
         keep(section(passed, args.mission))
 

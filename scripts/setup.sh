@@ -16,7 +16,7 @@ readonly GL_SPARE=libosmesa6 # a second way to draw; newer systems have it no mo
 
 case $LEVEL in
     run) EXTRAS=sim ;;
-    dev) EXTRAS=sim,dev,bench ;;
+    dev) EXTRAS=sim,dev,bench,docs ;;
     *) echo "setup: '$LEVEL' must be run or dev" >&2; exit 2 ;;
 esac
 

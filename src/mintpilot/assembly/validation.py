@@ -42,6 +42,11 @@ def _mistakes(file: MissionFile, base: Path) -> Iterator[tuple[Place, str]]:
         *_tried(("asking", "impact_metric"), lambda: check_name("metric", file.asking.impact_metric)),
         *_strategy_mistakes(file),
         *_tried(("perception", "use"), lambda: check_name("perception", file.perception.use)),
+        *(
+            fault
+            for number, namer in enumerate(file.perception.namers)
+            for fault in _tried(("perception", "namers", number), partial(check_name, "namer", namer))
+        ),
         *_tried(("language", "model"), lambda: check_name("language", file.language.model)),
     ]
     if file.goals is None or file.keep_away:

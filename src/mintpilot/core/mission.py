@@ -8,6 +8,7 @@ from typing import Any
 
 from mintpilot.core.errors import MissionError
 from mintpilot.core.geometry import Box, Vec3
+from mintpilot.core.georeference import Georeference
 from mintpilot.core.plan import VehicleLimits
 
 
@@ -137,6 +138,8 @@ class Mission:
     """For rooms that name none."""
     resolution_m: float = 0.2
     """Edge of a voxel, metres."""
+    georeference: Georeference | None = None
+    """Where the map lies on the earth; None: not known."""
 
 
 class Outcome(StrEnum):

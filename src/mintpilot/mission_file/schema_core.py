@@ -10,6 +10,7 @@ from mintpilot.core.geometry import Box, Vec3
 from mintpilot.core.mission import AskingSettings, CriticalityRule, Mission, SurveySettings
 from mintpilot.core.plan import VehicleLimits
 from mintpilot.core.task import Action, Reference, SubGoal, Task
+from mintpilot.mission_file.geodetic_places import georeference_of
 from mintpilot.mission_file.schema import GoalSpec, MissionFile
 from mintpilot.mission_file.schema_base import attributes_of, place_of
 from mintpilot.mission_file.schema_world import MapWorld
@@ -29,6 +30,7 @@ def mission_of(file: MissionFile, *, start_m: Vec3, volume: Box) -> Mission:
         survey=None if isinstance(file.world, MapWorld) else SurveySettings(**survey),
         prior_passable=file.priors.passable,
         prior_occupied=file.priors.occupied,
+        georeference=None if file.world.georeference is None else georeference_of(file.world.georeference),
         **resolution,
     )
 
