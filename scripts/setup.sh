@@ -111,7 +111,10 @@ if ! "$VENV/bin/python" -m pip install --quiet --quiet --disable-pip-version-che
     exit 3
 fi
 say "compiling the search (kept for later runs)"
-"$VENV/bin/mintpilot" plan examples/my-building/mission.yaml >/dev/null 2>&1 \
-    || say "the example could not be planned; mintpilot doctor says more"
+compile() {
+    "$VENV/bin/python" -c "from mintpilot.planning.warm import warm_up; warm_up()" \
+        && "$VENV/bin/mintpilot" plan examples/my-building/mission.yaml
+}
+compile >/dev/null 2>&1 || say "the example could not be planned; mintpilot doctor says more"
 fingerprint > "$VENV/.made-for-$LEVEL"
 say "done"
