@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, replace
-from functools import cache
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
 
@@ -45,7 +45,7 @@ class World:
     mission: Mission
     task: Task
     make_scene: Callable[[], Scene]
-    """Makes the truth to fly in; thinking needs none."""
+    """Makes the truth to fly in; thinking needs none. It can be pickled, for workers."""
     rules: FlightRules
     make_truth: Callable[[], TruthOracle]
     """Makes what knows the answers: for scripted operators and judges only."""
@@ -63,7 +63,7 @@ class World:
 
     @property
     def scene(self) -> Scene:
-        """The truth to fly in; made when it is first asked for."""
+        """The truth to fly in; made when it is asked for."""
         return self.make_scene()
 
 
@@ -142,19 +142,14 @@ def _by_rules(text: str, /, *, home_m: Vec3 | None, known: Collection[str] = ())
 def _assembled(file: MissionFile, mission: Mission, scene: Scene, rules: FlightRules, seed: int, parse: Parse) -> World:
     from mintpilot.simulation.scene_map import map_of_scene
 
-    def truth() -> TruthOracle:
-        from mintpilot.simulation.truth import SceneTruth
-
-        return SceneTruth(scene)
-
     task = _with_wishes(task_of(file) or parse(mission.instruction, home_m=mission.start_m), file)
     seen = map_of_scene(scene, mission.resolution_m)
     return World(
         mission=replace(mission, limits=_at_pace(mission.limits, task)),
         task=task,
-        make_scene=lambda: scene,
+        make_scene=partial(_as_it_is, scene),
         rules=rules,
-        make_truth=truth,
+        make_truth=partial(_truth_of_scene, scene),
         map=with_keep_away(seen, task, start_m=mission.start_m),
         is_map=False,
         seed=seed,
@@ -196,38 +191,48 @@ def _on_map(file: MissionFile, map_: SemanticMap, task: Task, start: Vec3, seed:
     problems = find_gaps(map_, task, start_m=start).problems if task.needs_confirmation else ()
     if problems:
         raise InputError(f"'{mission.instruction}' was read by a language model: {' '.join(problems)}")
-
-    def truth() -> TruthOracle:
-        from mintpilot.assembly.declared import DeclaredTruth
-
-        return DeclaredTruth(truths)
-
-    @cache
-    def scene() -> Scene:
-        from mintpilot.assembly.declared import wanted_of
-        from mintpilot.simulation.map_scene import scene_of_map
-
-        wanted = wanted_of(map_, task, truths, start)
-        return scene_of_map(
-            map_,
-            name=file.name,
-            start_m=start,
-            truths=truths,
-            goal_objects=wanted.objects,
-            places_m=wanted.places,
-            must_be_found=wanted.people,
-        )
-
     return World(
         mission=replace(mission, limits=_with_reserve(_at_pace(mission.limits, task)), volume=map_.frame.box),
         task=task,
-        make_scene=scene,
+        make_scene=partial(_scene_on_map, map_, file.name, task, truths, start),
         rules=replace(_hull(mission.limits, flat=map_.frame.is_flat), endurance_s=mission.limits.endurance_s),
-        make_truth=truth,
+        make_truth=partial(_declared_truth, truths),
         map=with_keep_away(with_solid_objects(map_, mission.limits.clearance_m), task, start_m=start),
         is_map=True,
         seed=seed,
         groups=correlations_of(file),
+    )
+
+
+def _as_it_is(scene: Scene) -> Scene:
+    return scene
+
+
+def _truth_of_scene(scene: Scene) -> TruthOracle:
+    from mintpilot.simulation.truth import SceneTruth
+
+    return SceneTruth(scene)
+
+
+def _declared_truth(truths: Mapping[str, str]) -> TruthOracle:
+    from mintpilot.assembly.declared import DeclaredTruth
+
+    return DeclaredTruth(truths)
+
+
+def _scene_on_map(map_: SemanticMap, name: str, task: Task, truths: Mapping[str, str], start: Vec3) -> Scene:
+    from mintpilot.assembly.declared import wanted_of
+    from mintpilot.simulation.map_scene import scene_of_map
+
+    wanted = wanted_of(map_, task, truths, start)
+    return scene_of_map(
+        map_,
+        name=name,
+        start_m=start,
+        truths=truths,
+        goal_objects=wanted.objects,
+        places_m=wanted.places,
+        must_be_found=wanted.people,
     )
 
 
