@@ -8,7 +8,7 @@ from contextlib import suppress
 
 from mintpilot.core.errors import DeviceError
 from mintpilot.core.events import Noticed, Timed
-from mintpilot.core.inputs import Input, Link, LinkChanged, MapObserved, QuestionReworded, Ticked
+from mintpilot.core.inputs import Input, Link, LinkChanged, MapObserved, MotionEnded, QuestionReworded, Ticked
 from mintpilot.core.mission import Outcome, Verdict
 from mintpilot.core.ports import Operator
 from mintpilot.core.query import Question
@@ -163,7 +163,7 @@ class Shell:
         except DeviceError as error:
             return [self._telemetry_lost(error)]
         self._now_s = vehicle.time_s
-        for event in ended:
+        for event in (event for event in ended if isinstance(event, MotionEnded)):
             self._moving, self._monitor = False, None
             if event.log is not None:
                 parts.map_source.flown(event.log.position_m, parts.parts.mission.limits.radius_m)
