@@ -40,6 +40,7 @@ COMMANDS = (
     "bench report",
     "bench export",
     "understand answer",
+    "export",
 )
 HEAD = """# The command line
 

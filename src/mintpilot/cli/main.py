@@ -13,6 +13,7 @@ from rich.console import Console
 
 from mintpilot.cli.bench import bench
 from mintpilot.cli.exits import EPILOGUE, ExitCode, fail, guarded
+from mintpilot.cli.exporting import export
 from mintpilot.cli.interrupts import listen
 from mintpilot.cli.understand_answer import answer
 from mintpilot.cli.understand_instruction import instruction
@@ -344,6 +345,13 @@ def replay(
 
 
 app.command(bench)
+app.command(
+    export,
+    help_epilogue=examples(
+        "mintpilot export mission.yaml --to plan --out mission.plan",
+        "mintpilot export runs/2026-11-28T10-00-00-survey --to wpl --firmware ardupilot",
+    ),
+)
 
 understand = App(
     name="understand",

@@ -172,6 +172,9 @@ class MissionFile(Spec):
     """Where: a `scenario` by name, an explicit `scene`, a `map` of your own, or what was `seen`."""
     goals: Annotated[Several[GoalSpec], Field(min_length=1)] | None = None
     """The steps, in order. Without them they are taken from the instruction."""
+    flight_plan: Words | None = None
+    """A `.plan` of QGroundControl or a `.waypoints` list, relative to this file, for a `map` with a `georeference`: its
+    way-points are the goals, and its fence is that of the map."""
     seeks_people: bool | None = None
     """True when everybody who is hurt must be found. Default: as the instruction says."""
     keep_away: Several[KeepAwaySpec] = ()

@@ -143,6 +143,8 @@ class MapWorld(Spec):
     """Height at which a flat map is flown, metres."""
     start_m: Place
     """Where the drone takes off."""
+    fence: Annotated[Several[Point2], Field(min_length=3)] | None = None
+    """Corners [x, y] in order of what must not be left. Nothing outside it is flown through."""
     regions: Several[RegionSpec] = ()
     """Places that are passable or not as a whole."""
     rooms: Several[RoomSpec] = ()
