@@ -4,18 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from contextlib import AbstractContextManager, ExitStack
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
 
 import numpy as np
 
+from mintpilot.assembly.real_vehicle import make_vehicle
 from mintpilot.assembly.registry import load
 from mintpilot.assembly.strategies import Argument, make_objective, make_strategy, strategy_label
 from mintpilot.assembly.talk import Talk
 from mintpilot.assembly.worlds import World
 from mintpilot.core.errors import InputError
 from mintpilot.core.geometry import Floats, GridFrame
-from mintpilot.core.ports import Operator, Perception, Recorder
+from mintpilot.core.ports import Operator, Perception, Recorder, Vehicle
 from mintpilot.core.semantic_map import SemanticMap
 from mintpilot.core.task import Action
 from mintpilot.elicitation.wording import word_question
@@ -24,6 +25,7 @@ from mintpilot.mapping.builder import MapBuilder
 from mintpilot.mission.components import MissionComponents
 from mintpilot.mission.deliberation import DeliberationParts
 from mintpilot.mission.map_source import CameraMapSource, GivenMap, MapSource
+from mintpilot.mission.process_worker import ProcessWorker
 from mintpilot.mission_file.schema import OperatorSpec
 from mintpilot.simulation.kinematic import KinematicSimulator
 from mintpilot.simulation.mujoco_vehicle import MujocoSimulator
@@ -41,6 +43,8 @@ class VehicleChoice(StrEnum):
     """Four rotors, physics, rendered RGB-D: the map is made by a survey flight."""
     KINEMATIC = "kinematic"
     """Follows trajectories exactly; the map is what a perfect survey would show."""
+    MAVLINK = "mavlink"
+    """A real vehicle; the map is given, and there is no camera."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -51,6 +55,10 @@ class Choices:
     strategy_arguments: Mapping[str, Argument] = field(default_factory=dict)
     """The strategy's own, e.g. ``{"quantile": 0.8}``."""
     vehicle: VehicleChoice = VehicleChoice.MUJOCO
+    address: str = ""
+    """Where a real vehicle is reached: ``mavlink://udpin:127.0.0.1:14540``."""
+    accept_failsafes: bool = False
+    """Fly a real vehicle although its autopilot's fail-safes are not as they should be."""
     planner: str = "grid"
     perception: str = "geometric"
     camera_size: tuple[int, int] = (320, 240)
@@ -75,6 +83,19 @@ def deliberation_parts(world: World, choices: Choices, talk: Talk | None = None)
         proposer=talk.proposer if talk is not None else None,
         word=talk.word if talk is not None else word_question,
     )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PartsBesideVehicle:
+    """Makes the parts of deliberation in the process that deliberates. Language models stay with the loop."""
+
+    world: World
+    choices: Choices
+    lang: str
+
+    def __call__(self) -> DeliberationParts:
+        """The parts; questions are worded in the mission's language by template, and bettered by the loop."""
+        return deliberation_parts(self.world, self.choices, Talk(lang=self.lang))
 
 
 def scripted_operator(world: World, spec: OperatorSpec) -> ScriptedOperator:
@@ -149,6 +170,8 @@ class _Components(AbstractContextManager[MissionComponents]):
                 f"'photograph {photographs[0].reference.phrase}' cannot be done: this vehicle has no camera. "
                 "Fly with one that has, or leave the picture out."
             )
+        if choices.vehicle is VehicleChoice.MAVLINK:
+            return self._beside_vehicle()
         kinematic = KinematicSimulator(world.scene, world.rules, seed=world.seed)
         given: MapSource = GivenMap(world.map)
         if not world.is_map:
@@ -156,24 +179,41 @@ class _Components(AbstractContextManager[MissionComponents]):
         changes = any(solid.appears_s > 0 for solid in world.scene.solids)
         return self._made(kinematic, given, surveys=False, watch_map=changes)
 
+    def _beside_vehicle(self) -> MissionComponents:
+        """A real vehicle on a given map. Nobody judges it, and it ends on the ground."""
+        world, choices = self._world, self._choices
+        vehicle = make_vehicle(world, choices.address, accept_failsafes=choices.accept_failsafes)
+        self._stack.callback(vehicle.close)
+        beside = PartsBesideVehicle(world=world, choices=choices, lang=self._talk.lang)
+        return replace(
+            self._common(vehicle, GivenMap(world.map), watch_map=False),
+            worker=lambda _: ProcessWorker(beside),
+            lands=True,
+        )
+
     def __exit__(self, *_: object) -> None:
         self._stack.close()
 
     def _made(
         self, simulator: MujocoSimulator | KinematicSimulator, source: MapSource, *, surveys: bool, watch_map: bool
     ) -> MissionComponents:
+        return replace(
+            self._common(simulator, source, watch_map=watch_map),
+            begin_task=simulator.begin_mission,
+            judge=simulator,
+            surveys=surveys,
+            simulated=True,
+        )
+
+    def _common(self, vehicle: Vehicle, source: MapSource, *, watch_map: bool) -> MissionComponents:
         return MissionComponents(
             parts=deliberation_parts(self._world, self._choices, self._talk),
-            vehicle=simulator,
+            vehicle=vehicle,
             map_source=source,
             operators=self._operators,
             recorder=self._recorder,
-            begin_task=simulator.begin_mission,
-            judge=simulator,
             improve=self._talk.improve,
             remarks=self._talk.take_remarks,
-            surveys=surveys,
-            simulated=True,
             watch_map=watch_map,
             digests=self._digests,
             strategy_name=strategy_label(self._choices.strategy, self._choices.strategy_arguments),

@@ -37,6 +37,8 @@ class MissionStarted:
     """Whether it is flown in a simulator."""
     surveys: bool = False
     """Whether the first map is made by a survey flight."""
+    lands: bool = False
+    """Whether it ends on the ground, as a real vehicle's does."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

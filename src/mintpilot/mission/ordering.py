@@ -80,6 +80,12 @@ def link_changed(t: Transition, event: LinkChanged) -> None:
             pass
 
 
+def wait_for_hand(t: Transition, what: str) -> None:
+    """A person has to do what the vehicle cannot: holds until they say that it is done."""
+    t.tell(f"{what}, then say 'continue'.")
+    _hold(t, None)
+
+
 def pass_time(t: Transition) -> None:
     """What passing time alone decides: holding ends before the battery does, and blindness ends in the safe state."""
     state = t.state

@@ -20,7 +20,7 @@ from mintpilot.mission.rewording import Rewording
 from mintpilot.mission.state import MissionState
 
 ATTENDED_S = 0.1
-"""While a person is attached, time passes in pieces of at most this, seconds."""
+"""While a person is attached, or beside a real vehicle, time passes in pieces of at most this, seconds."""
 SOON_S = 1e-6
 """Moments that are nearer than this are the same, seconds: clocks round."""
 SPEAKING_S = 1.2
@@ -151,7 +151,7 @@ class Shell:
         parts, began, wall_s, before_s = self._parts, time.perf_counter(), self._clock(), self._now_s
         attended = self._attended()
         until_s = min(self._now_s + parts.camera_period_s, state.next_deadline_s())
-        if attended:
+        if attended or parts.lands:
             until_s = min(until_s, self._now_s + ATTENDED_S)
         watching = parts.watch_map and self._moving and not self._braking
         if watching:

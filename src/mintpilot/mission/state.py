@@ -69,6 +69,8 @@ class Setup:
     """True where the first map is made by a survey flight."""
     simulated: bool = False
     """True in a simulator only: baselines may then fly what is not known to be passable."""
+    lands: bool = False
+    """True for a real vehicle: however the mission ends, it returns if it can, and lands."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -92,12 +92,9 @@ def _begin(turn: Turn, motion: Motion) -> None:
     if isinstance(motion, TakeOff) and state.phase is Phase.FLYING:
         turn.end(MotionEnd.ARRIVED)
         return
-    if (
-        state.phase is not Phase.FLYING
-        or state.leaving
-        or (Link.POSITION in state.down and not isinstance(motion, Land))
-    ):
-        why = "its position is not known" if Link.POSITION in state.down else f"it is {state.phase.value}"
+    blind = Link.POSITION in state.down and not isinstance(motion, Land)
+    if state.phase is not Phase.FLYING or state.leaving or blind:
+        why = "its position is not known" if blind else f"it is {state.phase.value}"
         turn.end(MotionEnd.FAILED if state.phase is Phase.RELEASED else MotionEnd.REFUSED, why)
         return
     match motion:

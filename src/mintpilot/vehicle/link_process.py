@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gc
 import os
+import queue
 import signal
 import time
 from contextlib import suppress
@@ -15,6 +16,7 @@ from mintpilot.core.errors import MintPilotError
 from mintpilot.core.georeference import Georeference
 from mintpilot.core.inputs import Link
 from mintpilot.vehicle.address import Address
+from mintpilot.vehicle.channel import Channel, End
 from mintpilot.vehicle.control import link_step
 from mintpilot.vehicle.control_state import AIRBORNE, ControlState, Phase
 from mintpilot.vehicle.course import SetPoint
@@ -26,6 +28,8 @@ from mintpilot.vehicle.signals import Act, Changed, Command, Ended, Fed, LinkEve
 
 TICK_S = 0.05
 """Between set-points, seconds: 20 a second."""
+LOST_S = 2.0
+"""An autopilot of which nothing was heard for so long is not waited for, seconds."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -76,9 +80,7 @@ def run_link(pipe: Connection, setup: LinkSetup) -> None:
             georeference=setup.georeference,
             accept=setup.accept_failsafes,
         )
-        with suppress(OSError):  # nobody listens any more; nothing has taken off
-            pipe.send(prepared)
-            _LinkLoop(pipe, link, setup, prepared).run()
+        _LinkLoop(pipe, link, setup, prepared).run()
     finally:
         link.close()
 
@@ -95,26 +97,28 @@ def _stand_alone() -> None:
 
 class _LinkLoop:
     def __init__(self, pipe: Connection, link: MavsdkLink, setup: LinkSetup, prepared: Prepared) -> None:
-        self._pipe: Connection | None = pipe
+        self._channel: Channel[Feed, Report] = Channel(pipe)
         self._link, self._setup = link, setup
         now = time.monotonic()
         self._state = ControlState(
             envelope=setup.envelope, return_clear=prepared.return_clear, now_s=now, fed_s=now, since_s=now
         )
         self._frame = LocalFrame()
+        self._channel.tell(prepared)
 
     def run(self) -> None:
         """Ticks at a fixed rate; what the loop says is taken in between."""
         gc.collect()
         gc.freeze()
         due = time.monotonic()
-        while self._pipe is not None or self._has_work():
+        while not self._channel.gone or self._has_work():
             due = max(due + TICK_S, time.monotonic() - TICK_S)
             self._listen(due)
             for answer in self._link.answers():
                 self._step(answer)
             self._step(Tick(time_s=time.monotonic(), seen=self._seen()))
-            self._tell(Snapshot(time_s=time.monotonic(), seen=self._state.seen, phase=self._state.phase))
+            snapshot = Snapshot(time_s=time.monotonic(), seen=self._state.seen, phase=self._state.phase)
+            self._channel.show(snapshot)
 
     def _has_work(self) -> bool:
         """Whether heartbeats must go on after the loop has gone.
@@ -123,27 +127,21 @@ class _LinkLoop:
         autopilot they must not: their end is what its fail-safe waits for.
         """
         state = self._state
-        lost = Link.TELEMETRY in state.down or state.now_s - state.seen.message_s > 2.0
+        lost = Link.TELEMETRY in state.down or state.now_s - state.seen.message_s > LOST_S
         return state.phase in AIRBORNE or (state.phase is Phase.RELEASED and state.seen.armed and not lost)
 
     def _listen(self, until_s: float) -> None:
         """Takes in what the loop says, until that moment."""
-        while True:
-            left_s = until_s - time.monotonic()
-            if left_s <= 0:
-                return
-            if self._pipe is None:
-                time.sleep(left_s)
-                return
+        while (left_s := until_s - time.monotonic()) > 0:
             try:
-                if not self._pipe.poll(left_s):
-                    return
-                said: Feed = self._pipe.recv()
-            except (EOFError, OSError):
-                self._pipe = None
-                continue
+                said = self._channel.get(left_s)
+            except queue.Empty:
+                return
             now = time.monotonic()
-            self._step(Fed(time_s=now) if said is None else Told(time_s=now, command=said))
+            if said is None:
+                self._step(Fed(time_s=now))
+            elif not isinstance(said, End):
+                self._step(Told(time_s=now, command=said))
 
     def _seen(self) -> Seen:
         heard, setup = self._link.telemetry, self._setup
@@ -160,17 +158,9 @@ class _LinkLoop:
                 case Act():
                     self._link.act(order)
                 case Ended() | Changed():
-                    self._tell(order)
+                    self._channel.tell(order)
 
     def _send(self, point: SetPoint) -> None:
         frame = self._frame
         ned, velocity = frame.to_ned(point.position_m), frame.velocity_to_ned(point.velocity_mps)
         self._link.set_point(ned, velocity, frame.yaw_to_ned(point.yaw_rad))
-
-    def _tell(self, report: Report) -> None:
-        if self._pipe is None:
-            return
-        try:
-            self._pipe.send(report)
-        except OSError:
-            self._pipe = None

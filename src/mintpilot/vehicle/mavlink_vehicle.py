@@ -77,7 +77,7 @@ class MavlinkVehicle(Vehicle):
         self._endurance_s = endurance_s
         self._snapshot: Snapshot | None = None
         self._events: list[VehicleInput] = []
-        self._fed_s = 0.0
+        self._fed_s = self._heard_s = 0.0
         self._lost = ""
         self._process.start()
         theirs.close()
@@ -201,10 +201,11 @@ class MavlinkVehicle(Vehicle):
         try:
             while self._pipe.poll():
                 self._take(cast(Report, self._pipe.recv()))
+                self._heard_s = self._now()
         except (EOFError, OSError):
             self._lost = self._lost or f"the link process is gone ({self._exit()}): the autopilot's fail-safe flies"
             return
-        silent_s = time.monotonic() - (self._snapshot.time_s if self._snapshot is not None else self._begun_s)
+        silent_s = self._now() - self._heard_s
         if self._snapshot is not None and silent_s > DEAF_S:
             self._lost = self._lost or f"the link process has said nothing for {silent_s:.1f} s"
 

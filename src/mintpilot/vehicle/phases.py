@@ -67,8 +67,7 @@ def did(turn: Turn, event: Did) -> None:
     agreed = not event.error
     match event.action:
         case Action.ARM if agreed and state.phase is Phase.ARMING:
-            height_m = state.envelope.hover_m[2] - state.envelope.ground_m
-            turn.ask(Action.TAKE_OFF, state.motion.height_m if isinstance(state.motion, TakeOff) else height_m)
+            turn.ask(Action.TAKE_OFF, state.envelope.hover_m[2] - state.envelope.ground_m)
         case Action.TAKE_OFF if agreed:
             turn.enter(Phase.CLIMBING)
             turn.set(mode_since_s=turn.state.now_s)
