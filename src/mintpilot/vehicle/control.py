@@ -38,7 +38,8 @@ def link_step(state: ControlState, event: LinkEvent) -> tuple[ControlState, tupl
         case Did():
             phases.did(turn, event)
         case Tick():
-            elapsed_s = turn.state.now_s - state.now_s
+            elapsed_s = turn.state.now_s - state.ticked_s
+            turn.set(ticked_s=turn.state.now_s)
             watching.take_in(turn, event.seen)
             watching.watch(turn)
             _deadman(turn)

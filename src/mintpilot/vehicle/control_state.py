@@ -50,6 +50,8 @@ class ControlState:
     return_clear: bool = False
     """Whether the autopilot's return altitude was read back and clears everything mapped."""
     now_s: float = 0.0
+    ticked_s: float = 0.0
+    """When time passed last."""
     fed_s: float = 0.0
     """When the loop was last known to be alive."""
     seen: Seen = field(default_factory=Seen)

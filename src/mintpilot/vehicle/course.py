@@ -10,7 +10,7 @@ from mintpilot.core.geometry import Floats, Vec3
 from mintpilot.core.trajectory import Trajectory
 
 BRAKING_MPS2 = 2.0
-"""Hardest change of speed along the trajectory while its clock slows down or speeds up, m/s^2."""
+"""Hardest change of speed along the trajectory while its clock slows down to brake, or speeds up again, m/s^2."""
 LAG_M = 0.5
 """From this distance between the vehicle and where it should be, the clock slows down, metres ..."""
 FAR_M = 1.0
@@ -58,12 +58,12 @@ class Course:
 
 def advanced(course: Course, seconds: float, lag_m: float) -> Course:
     """The course some time later, for a vehicle that is ``lag_m`` from its set-point."""
-    wanted = 0.0 if course.braking else min(max((FAR_M - lag_m) / (FAR_M - LAG_M), 0.0), 1.0)
     way = course.trajectory
     at = course.along_s + float(way.time_s[0])
     speed = max(float(np.linalg.norm(_row(at, way.time_s, way.velocity_mps))), _SLOWEST_MPS)
     change = BRAKING_MPS2 / speed * seconds
-    rate = min(max(wanted, course.rate - change), course.rate + change)
+    rate = max(course.rate - change, 0.0) if course.braking else course.rate + change
+    rate = min(rate, max((FAR_M - lag_m) / (FAR_M - LAG_M), 0.0), 1.0)
     along = min(course.along_s + seconds * (course.rate + rate) / 2, way.duration_s)
     return replace(course, along_s=along, rate=rate)
 

@@ -101,7 +101,7 @@ class _LinkLoop:
         self._link, self._setup = link, setup
         now = time.monotonic()
         self._state = ControlState(
-            envelope=setup.envelope, return_clear=prepared.return_clear, now_s=now, fed_s=now, since_s=now
+            envelope=setup.envelope, return_clear=prepared.return_clear, now_s=now, ticked_s=now, fed_s=now, since_s=now
         )
         self._frame = LocalFrame()
         self._channel.tell(prepared)
@@ -157,6 +157,9 @@ class _LinkLoop:
                     self._send(order)
                 case Act():
                     self._link.act(order)
+                case Changed(link=Link.TELEMETRY, up=False):
+                    self._channel.tell(order)
+                    self._link.close()  # no heartbeats any more: the autopilot's fail-safe waits for that
                 case Ended() | Changed():
                     self._channel.tell(order)
 

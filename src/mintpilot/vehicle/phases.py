@@ -12,6 +12,8 @@ from mintpilot.vehicle.control_state import Phase, Turn
 from mintpilot.vehicle.course import FAR_M, Course, SetPoint, advanced, straight
 from mintpilot.vehicle.signals import Action, Did
 
+ANSWER_S = 10.0
+"""Longest wait for an answer of the autopilot, seconds."""
 READY_S = 60.0
 """Longest wait for an autopilot that is not ready to be armed, seconds."""
 ARM_S = 30.0
@@ -43,6 +45,8 @@ APPROACH_M = 1.5
 
 def tick(turn: Turn, elapsed_s: float) -> None:
     """Time has passed."""
+    if turn.state.asked is not None and turn.state.now_s - turn.state.asked_s > ANSWER_S:
+        did(turn, Did(time_s=turn.state.now_s, action=turn.state.asked, error="it did not answer"))
     match turn.state.phase:
         case Phase.ARMING:
             _arming(turn)

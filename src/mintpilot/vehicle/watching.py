@@ -8,7 +8,7 @@ from mintpilot.core.inputs import Link
 from mintpilot.vehicle.control_state import Phase, Turn
 from mintpilot.vehicle.signals import Changed, Mode, Seen
 
-SILENT_S = 1.0
+SILENT_S = 1.6
 """Nothing heard for so long: the link is lost, seconds. The position alone comes 20 times a second."""
 BEATS = 3.6
 """So many heartbeats missing one after the other: the link is lost."""
@@ -94,7 +94,8 @@ def _watch_hands(turn: Turn) -> None:
     if not seen.armed and state.phase not in (Phase.LANDING, Phase.RETURNING):
         turn.release(Link.CONTROL, "its motors were stopped")
         return
-    if seen.mode in EXPECTED[state.phase] or not seen.armed or state.asked is not None:
+    changing = state.asked is not None and seen.mode is not Mode.OTHER  # it may still be in the mode before
+    if seen.mode in EXPECTED[state.phase] or not seen.armed or changing:
         return
     whose = {
         Mode.LAND: "its fail-safe or a pilot lands it",

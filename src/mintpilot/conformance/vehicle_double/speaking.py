@@ -55,7 +55,8 @@ class Speaker:
         self._due_s: dict[int, float] = {}
         self._makers: dict[int, Callable[[int], Any]] = {
             0: self._heartbeat, 1: self._sys_status, 24: self._gps, 30: self._attitude, 32: self._local,
-            33: self._global, 49: self._origin, 147: self._battery, 148: self._version, 242: self._home, 245: self._extended,
+            33: self._global, 49: self._origin, 147: self._battery, 148: self._version, 242: self._home,
+            245: self._extended,
         }  # fmt: skip
 
     def message(self, number: int, now_s: float) -> Any | None:
