@@ -42,6 +42,8 @@ class FlightOptions:
     """In which questions are asked; None: as the mission file says."""
     perception: str | None = None
     """What makes objects of pictures, by name; None: as the mission file says."""
+    accept_failsafes: bool = False
+    """Fly a real vehicle whose autopilot's fail-safes are not as they should be."""
 
 
 def fly(path: Path, options: FlightOptions) -> ExitCode:
@@ -77,6 +79,7 @@ def fly(path: Path, options: FlightOptions) -> ExitCode:
                 llm=options.llm,
                 lang=options.lang,
                 perception=options.perception,
+                accept_failsafes=options.accept_failsafes,
             )
         except KeyboardInterrupt:
             narrator.rest()

@@ -97,6 +97,26 @@ class MavlinkVehicle(Vehicle):
         """Whether it flies, in our hands."""
         return self._snapshot is not None and self._snapshot.phase in AIRBORNE
 
+    @property
+    def battery(self) -> float | None:
+        """Share of the battery that is left; None: not told."""
+        return self._snapshot.seen.battery if self._snapshot is not None else None
+
+    def readiness(self, longest_s: float = 30.0) -> tuple[Check, ...]:
+        """Waits until the autopilot may be armed, and until its battery is told, at most so many seconds."""
+        end_s = self._now() + longest_s
+        while self._now() < end_s and (self._not_ready() or self.battery is None):
+            self.advance(self._now() + 0.2)
+        why = self._not_ready()
+        how = "mend what the autopilot complains of; its ground station shows it in full"
+        return (Check(check="ready to arm", ok=not why, value=why or "yes", wanted="yes", how=how),)
+
+    def _not_ready(self) -> str:
+        if self._snapshot is None:
+            return "nothing was heard of it"
+        seen = self._snapshot.seen
+        return f"{seen.not_ready} ({seen.status})" if seen.not_ready and seen.status else seen.not_ready
+
     def state(self) -> VehicleState:
         """Where it was heard to be last."""
         now = self._now()
