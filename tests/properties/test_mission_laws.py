@@ -15,6 +15,7 @@ from hypothesis import HealthCheck, Phase, note, settings
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, precondition, rule
 
+from mintpilot.assembly.briefing import briefing_of
 from mintpilot.assembly.components import Choices, deliberation_parts
 from mintpilot.conformance.sample import sample_world
 from mintpilot.core.digest import digest
@@ -79,14 +80,16 @@ def decided(request: Request) -> DeliberationEnded:
 class Mission(RuleBasedStateMachine):
     """One mission, with everything around it played by the rules below."""
 
-    @initialize(calm=st.sampled_from([False, False, True]))
-    def begin(self, calm: bool) -> None:
+    @initialize(calm=st.sampled_from([False, False, True]), briefed=st.sampled_from([False, False, True]))
+    def begin(self, calm: bool, briefed: bool) -> None:
         """A calm mission meets no orders, clouds, refusals and lost links: it gets far."""
         world = sample_world()
         self.calm = calm
         self.map: SemanticMap = world.map
         self.time_s, self.position = 0.0, world.mission.start_m
-        self.state: MissionState = initial_state(Setup(mission=parts().mission), self.vehicle())
+        self.go = not briefed
+        briefing = briefing_of(parts(), self.map) if briefed else None
+        self.state: MissionState = initial_state(Setup(mission=parts().mission, briefing=briefing), self.vehicle())
         self.moving: Motion | None = None
         self.braking = False
         self.looks = 0
@@ -110,6 +113,8 @@ class Mission(RuleBasedStateMachine):
     def feed(self, event: Input) -> None:
         """One step: the same twice, and its directives looked at from outside."""
         before = self.state
+        if isinstance(event, Answered) and event.answer.reply is Reply.YES and self.open == [event.question]:
+            self.go = True
         self.state, directives = step(before, event)
         again, same = step(before, event)
         assert digest(directives) == digest(same), "equal events give equal directives"
@@ -123,6 +128,7 @@ class Mission(RuleBasedStateMachine):
     def carry_out(self, directive: Directive) -> None:
         match directive:
             case Move():
+                assert self.go, "nothing moves before an explicit yes to the briefing"
                 assert self.moving is None, "a motion replaces another one only at rest"
                 assert not self.holds or isinstance(directive.motion, Land), "who holds does not move"
                 self.moving, self.braking = directive.motion, False
@@ -287,10 +293,12 @@ class Mission(RuleBasedStateMachine):
     @precondition(lambda self: not self.calm)
     @rule(order=st.sampled_from(Order))
     def an_order(self, order: Order) -> None:
-        before = self.moving
+        before, grounded = self.moving, self.state.grounded
         self.feed(Ordered(time_s=self.time_s, order=order))
-        self.holds = order is Order.HOLD and not self.ended
-        if order is not Order.CONTINUE and not self.ended:
+        self.holds = order is Order.HOLD and not self.ended and not grounded
+        if grounded:
+            assert self.ended == (order not in (Order.HOLD, Order.CONTINUE)), "on the ground it waits, or it is over"
+        elif order is not Order.CONTINUE and not self.ended:
             goes_on = before is not None and self.moving is before
             assert not goes_on or self.braking, "an order decides the next motion: the present one ends"
             assert not self.open, "who orders is not asked"
@@ -316,6 +324,10 @@ class Mission(RuleBasedStateMachine):
         question = self.state.question
         if question is not None:
             truth = sample_world().truth
+            if self.state.grounded:
+                go = Answer(reply=Reply.YES, latency_s=0.0)
+                self.feed(Answered(time_s=self.time_s, question=question.question.id, answer=go))
+                return
             values = {gap.id: truth.value_of(gap) for gap in question.question.gaps}
             known = all(value is not None for value in values.values())
             says = Reply.UNSURE if not known else Reply.YES if question.question.query.holds(values) else Reply.NO

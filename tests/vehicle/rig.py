@@ -100,9 +100,7 @@ class Rig:
         if len(self._on_the_way) > self.late_ticks:
             seen = self._on_the_way[-1 - self.late_ticks]
             shift = self.late_ticks * TICK_S
-            arrived = {
-                name: getattr(seen, name) + shift for name in ("message_s", "heartbeat_s", "position_s")
-            }
+            arrived = {name: getattr(seen, name) + shift for name in ("message_s", "heartbeat_s", "position_s")}
             self._step(Tick(time_s=self.now_s, seen=replace(seen, **arrived)))
 
     def _look(self, beats: bool) -> None:

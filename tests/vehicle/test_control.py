@@ -5,8 +5,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from vehicle.places import PAD, room
-from vehicle.rig import Rig
+from tests.vehicle.places import PAD, room
+from tests.vehicle.rig import Rig
 
 from mintpilot.conformance.vehicle_double.body import Body
 from mintpilot.conformance.vehicle_double.faults import Fault

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from vehicle.places import PAD, room
-from vehicle.rig import Rig
+from tests.vehicle.places import PAD, room
+from tests.vehicle.rig import Rig
 
 from mintpilot.conformance.vehicle_double.faults import Fault
 from mintpilot.conformance.vehicle_double.parameters import Flavour
@@ -158,7 +158,7 @@ def a_lost_link_is_told(rig: Rig, released_s: float) -> None:
 
 
 def it_is_left_safe(flight: Flight, released_s: float) -> None:
-    """Forty seconds after the loop's last sign of life: on the ground, hovering, in the pilot's hands, or its fail-safe's."""
+    """Long after the loop's last sign of life: on the ground, hovering, in a pilot's hands, or its fail-safe's."""
     rig = flight.rig
     a = rig.autopilot
     if not a.airborne:

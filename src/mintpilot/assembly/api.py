@@ -116,6 +116,7 @@ def run_mission(
     lang: str | None = None,
     perception: str | None = None,
     accept_failsafes: bool = False,
+    briefs: bool = False,
 ) -> MissionRecord:
     """Flies a mission and keeps what happened.
 
@@ -136,6 +137,8 @@ def run_mission(
         lang: in which questions are asked; default: as the file says.
         perception: registered name of what makes objects of pictures; default: as the file says.
         accept_failsafes: fly a real vehicle although its autopilot's fail-safes are not as they should be.
+        briefs: whether the operator is asked go or no-go before take-off. One always is where a language model read the
+            instruction.
 
     Returns:
         The record. How the mission ended is `MissionRecord.outcome`; an ending short of success is no exception.
@@ -154,6 +157,8 @@ def run_mission(
         address=vehicle if vehicle.startswith(SCHEME) else "",
         accept_failsafes=accept_failsafes,
         perception=perception or file.perception.use,
+        briefs=briefs,
+        namers=tuple(file.perception.namers) if perception in (None, file.perception.use) else (),
     )
     with talk_for(file.language, llm=llm, lang=lang) as talk:
         world = build_world(file, base=folder, seed=seed, parse=talk.parse)

@@ -10,6 +10,7 @@ from mintpilot.assembly.real_vehicle import make_vehicle
 from mintpilot.assembly.talk import Talk
 from mintpilot.assembly.worlds import World, build_world
 from mintpilot.core.errors import InfeasibleError
+from mintpilot.core.gap import Assumptions
 from mintpilot.core.ports import Fly
 from mintpilot.mission.preview import preview
 from mintpilot.mission_file.reader import read_mission
@@ -62,7 +63,7 @@ def _needed_s(world: World) -> float:
         first = preview(world.map, parts, max_deliberations=1).first
     except InfeasibleError:
         return math.inf
-    cautious = first.situation.space.cautious({})
+    cautious = first.situation.space.cautious(Assumptions())
     if cautious is not None:
         return cautious.cost_s
     decision = first.decision

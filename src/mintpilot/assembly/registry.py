@@ -56,6 +56,7 @@ BUILT_IN: Final = MappingProxyType(
             {
                 "geometry": "mintpilot.perception.geometry_namer:GeometryNamer",
                 "ocr": "mintpilot.perception.ocr_namer:OcrNamer",
+                "vision": "mintpilot.assembly.perceiving:vision_namer",
             }
         ),
         "frames": MappingProxyType(

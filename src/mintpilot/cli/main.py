@@ -286,6 +286,7 @@ def see(
     every: Annotated[int, Parameter(validator=validators.Number(gte=1))] = 1,
     longest: Annotated[int, Parameter(validator=validators.Number(gte=1))] = 200,
     perception: str = "segments",
+    namer: Annotated[list[str], Parameter(name="--namer", negative="")] = [],  # noqa: B006
     seed: Seed = None,
     out: Path | None = None,
     json: Json = False,
@@ -306,6 +307,8 @@ def see(
         every: Use each n-th frame only.
         longest: Use no more frames than this.
         perception: Who makes objects of pictures: segments, geometric, or a plug-in's.
+        namer: Who names what segments finds: geometry, ocr (text on things), vision (a vision-language model at
+            MINTPILOT_VLM_URL), or a plug-in's; may be given several times. Default: geometry.
         seed: Of simulated sources. Default: 0.
         out: Folder for map and report.
         json: Print one JSON object, and nothing else, on standard output.
@@ -326,7 +329,9 @@ def see(
         seed=seed or 0,
     )
     return guarded(
-        lambda: see_pictures(source, options, perception=perception, instruction=instruction, out=out, as_json=json),
+        lambda: see_pictures(
+            source, options, perception=perception, namers=namer, instruction=instruction, out=out, as_json=json
+        ),
         as_json=json,
         debug=debug,
     )

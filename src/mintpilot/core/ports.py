@@ -47,6 +47,17 @@ class Namer(Protocol):
         ...
 
 
+class VisionModel(Protocol):
+    """Answers in words what a picture shows. What it says is a suggestion: geometry comes from depth alone."""
+
+    def look(self, prompt: str, picture_png: bytes, *, schema: type, timeout_s: float) -> str:
+        """The model's answer, JSON of that pydantic schema where it keeps to it; the caller checks it.
+
+        Raises `DeviceError` when there is no answer in time.
+        """
+        ...
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SourceOptions:
     """What the command line or a caller knows about the pictures. None: found out, or assumed and said."""

@@ -55,7 +55,7 @@ def shown(t: Transition, event: QuestionShown) -> None:
     """Somebody has the question in front of them."""
     open_ = t.state.question
     if open_ is not None and open_.question.id == event.question and open_.shown_s is None:
-        deadline_s = event.time_s + t.state.setup.mission.asking.patience_s
+        deadline_s = event.time_s + (open_.deadline_s - open_.asked_s)
         t.set(question=replace(open_, shown_s=event.time_s, deadline_s=deadline_s))
 
 
@@ -64,6 +64,8 @@ def reworded(t: Transition, event: QuestionReworded) -> None:
     open_ = t.state.question
     if open_ is None or open_.question.id != event.question or open_.question.text == event.text:
         return
+    if t.state.grounded:
+        return  # a briefing says what was understood, in the words of the steps
     question = replace(open_.question, text=event.text, worded_by=event.worded_by)
     first = open_.first_text or open_.question.text
     t.set(question=replace(open_, question=question, first_text=first, reworded_s=event.seconds))

@@ -104,8 +104,13 @@ class _Replay:
         if self._state is None:
             if not isinstance(event, MissionBegun):
                 raise RecordError(f"event {number}: the steps begin with {type(event).__name__}: the start is missing")
-            begun = self.started
-            setup = Setup(mission=begun.mission, surveys=begun.surveys, simulated=begun.simulated, lands=begun.lands)
+            setup = Setup(
+                mission=self.started.mission,
+                surveys=self.started.surveys,
+                simulated=self.started.simulated,
+                lands=self.started.lands,
+                briefing=self.started.briefing,
+            )
             self._state = initial_state(setup, event.vehicle)
         what = self._thought_again(event) if isinstance(event, DeliberationEnded) else ""
         if not what:

@@ -7,6 +7,7 @@ from enum import StrEnum
 
 import numpy as np
 
+from mintpilot.core.briefing import Briefing
 from mintpilot.core.geometry import Floats
 from mintpilot.core.inputs import Link
 from mintpilot.core.mission import Mission, Outcome, Verdict
@@ -71,6 +72,8 @@ class Setup:
     """True in a simulator only: baselines may then fly what is not known to be passable."""
     lands: bool = False
     """True for a real vehicle: however the mission ends, it returns if it can, and lands."""
+    briefing: Briefing | None = None
+    """What is shown before take-off and must be answered with an explicit yes; None: it takes off at once."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -145,6 +148,8 @@ class MissionState:
     """Index of the leg that is flown, or prepared."""
     assume_passable: frozenset[str] = frozenset()
     motion: OngoingMotion | None = None
+    grounded: bool = False
+    """True until the briefing was answered with yes: nothing moves."""
     question: OpenQuestion | None = None
     learnt: Answer | None = None
     """The answer that was learnt from last, as it counted."""

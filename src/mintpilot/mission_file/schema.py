@@ -83,6 +83,8 @@ class PerceptionSpec(Spec):
     use: Name = "geometric"
     """Perception by name: `geometric` (boxes, people lying, doors, smoke, fire), `segments` (bodies of any kind,
     anywhere), or that of a plug-in; `--perception` overrides it."""
+    namers: Several[Name] = ()
+    """With `segments`: who names what it finds, e.g. `[geometry, ocr, vision]`; default: by geometry."""
 
 
 class GoalSpec(Spec):
