@@ -27,8 +27,14 @@ MODES = {
     DoubleMode.PILOT: Mode.OTHER,
 }
 GOOD = {
-    Flavour.PX4: {"COM_OBL_RC_ACT": 4, "NAV_DLL_ACT": 3, "COM_LOW_BAT_ACT": 2},
-    Flavour.ARDUPILOT: {"MAV_GCS_SYSID": 245, "FS_GCS_ENABLE": 5, "GUID_TIMEOUT": 1, "BATT_FS_LOW_ACT": 1},
+    Flavour.PX4: {"COM_OBL_RC_ACT": 4, "NAV_DLL_ACT": 3, "COM_LOW_BAT_ACT": 2, "RTL_RETURN_ALT": 4},
+    Flavour.ARDUPILOT: {
+        "MAV_GCS_SYSID": 245,
+        "FS_GCS_ENABLE": 5,
+        "GUID_TIMEOUT": 1,
+        "BATT_FS_LOW_ACT": 1,
+        "RTL_ALT_M": 4,
+    },
 }
 
 

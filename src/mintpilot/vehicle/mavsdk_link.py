@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 import queue
+import socket
 import time
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
@@ -225,14 +226,14 @@ def _connected(address: Address) -> tuple[Mavsdk, System]:
         from mavsdk.mavsdk import Configuration, Mavsdk
     except ImportError:
         raise MissingPartError("flying needs MAVSDK; install it: pip install 'mintpilot[vehicle]'") from None
+    _check_port(address)
     log_subscribe(lambda *_: True)  # what it has to say reaches the person as errors
     mavsdk = Mavsdk(Configuration.create_manual(OUR_SYSTEM_ID, OUR_COMPONENT_ID, True))
     try:
         mavsdk.add_any_connection(address.connection)
     except Exception as error:
         mavsdk.destroy()
-        cause = "another program (a ground station, an earlier run) uses it, or it does not exist"
-        raise DeviceError(f"{address.connection} cannot be opened ({error}): most likely {cause}") from None
+        raise _closed(address, str(error)) from None
     system = mavsdk.first_autopilot(HEARD_S)
     if system is None:
         mavsdk.destroy()
@@ -242,3 +243,22 @@ def _connected(address: Address) -> tuple[Mavsdk, System]:
             "compare the address with the one that the autopilot (or its router) is set to"
         )
     return mavsdk, system
+
+
+def _check_port(address: Address) -> None:
+    """The library shares a port with whoever has it already, and then hears nothing: that must be told before."""
+    transport, _, place = address.connection.partition("://")
+    host, _, port = place.rpartition(":")
+    if not address.listens:
+        return
+    kind = socket.SOCK_DGRAM if transport == "udpin" else socket.SOCK_STREAM
+    try:
+        with socket.socket(socket.AF_INET, kind) as probe:
+            probe.bind((host, int(port)))
+    except OSError as error:
+        raise _closed(address, error.strerror or str(error)) from None
+
+
+def _closed(address: Address, why: str) -> DeviceError:
+    cause = "another program (a ground station, an earlier run) uses it, or it does not exist"
+    return DeviceError(f"{address.connection} cannot be opened ({why}): most likely {cause}")

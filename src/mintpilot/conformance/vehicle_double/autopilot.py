@@ -89,8 +89,6 @@ class DoubleAutopilot:
             return "Arming denied: compass variance"
         if not self.knows_position:
             return "Arming denied: no position"
-        if self.flavour is Flavour.ARDUPILOT and self.mode is not DoubleMode.FOLLOW:
-            pass  # GUIDED or a pilot's mode: both arm
         self.armed, self._stood_s = True, None
         return ""
 
@@ -103,7 +101,8 @@ class DoubleAutopilot:
 
     def take_off(self, height_m: float) -> str:
         """Climbs; the reason why not, or nothing."""
-        if not self.armed or (self.flavour is Flavour.ARDUPILOT and self.mode is not DoubleMode.FOLLOW):
+        ready = self.flavour is Flavour.PX4 or self.mode is DoubleMode.FOLLOW
+        if not self.armed or not ready or Fault.PILOT in self.faults:
             return "Takeoff denied"
         if self.flavour is Flavour.PX4:
             self._enter(DoubleMode.TAKE_OFF)
