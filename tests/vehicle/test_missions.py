@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import math
 import threading
 import time
 from pathlib import Path
 
 import pytest
+import yaml
+from pymap3d import enu2geodetic
 
 from mintpilot.assembly.api import run_mission
 from mintpilot.assembly.preflight import preflight
@@ -15,10 +18,12 @@ from mintpilot.cli.main import main
 from mintpilot.conformance.vehicle_double.faults import Fault, TimedFault
 from mintpilot.conformance.vehicle_double.parameters import Flavour
 from mintpilot.conformance.vehicle_double.serving import DoubleSetup, DoubleState, VehicleDouble, free_port
+from mintpilot.conformance.vehicle_double.speaking import HOME_ALTITUDE_M, HOME_DEG
 from mintpilot.core.events import Asked
 from mintpilot.core.inputs import Ordered
 from mintpilot.core.query import Order
 from mintpilot.mission_file.reader import read_mission
+from mintpilot.mission_file.schema import MissionFile
 
 pytest.importorskip("mavsdk", reason="needs mavsdk")
 pytest.importorskip("pymavlink", reason="needs pymavlink")
@@ -147,3 +152,27 @@ def test_preflight_sets_and_reads_back(flavour, capsys):
         assert all(check.ok for check in checks), [check for check in checks if not check.ok]
         assert double.state().fence_corners == 4
         assert not double.state().armed
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("flavour", FLAVOURS)
+def test_a_map_that_lies_on_the_earth_and_is_turned(flavour):
+    """The double is at home; the map's origin lies where its start is there, its y axis pointing to the north-east."""
+    heading = math.radians(40)
+    x, y = 1.5, 5.0
+    east, north = x * math.cos(heading) + y * math.sin(heading), y * math.cos(heading) - x * math.sin(heading)
+    latitude, longitude, _ = enu2geodetic(-east, -north, 0.0, *HOME_DEG, HOME_ALTITUDE_M)
+    base = EXAMPLES / "my-building"
+    mission = yaml.safe_load((base / "mission.yaml").read_text())
+    mission["world"]["georeference"] = {
+        "latitude": float(latitude), "longitude": float(longitude), "altitude_m": HOME_ALTITUDE_M,
+        "heading_rad": heading,
+    }  # fmt: skip
+    port = free_port()
+    with VehicleDouble(DoubleSetup(flavour=flavour, port=port)) as double:
+        record = run_mission(
+            MissionFile.model_validate(mission), base=base, vehicle=f"mavlink://udpin:127.0.0.1:{port}"
+        )
+        assert record.outcome.value == "success"
+        assert is_down(double.state())
+        assert double.state().fence_corners == 4

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import os
 import signal
+import socket
 import time
 from contextlib import contextmanager
 from pathlib import Path
@@ -20,8 +21,11 @@ from mintpilot.conformance.vehicle_double.serving import DoubleSetup, VehicleDou
 from mintpilot.core.errors import DeviceError
 from mintpilot.core.inputs import Link, LinkChanged
 from mintpilot.core.motion import FollowTrajectory, MotionEnd, TakeOff
+from mintpilot.vehicle import connecting
+from mintpilot.vehicle.address import parse_address
 from mintpilot.vehicle.course import straight
 from mintpilot.vehicle.mavlink_vehicle import MavlinkVehicle
+from mintpilot.vehicle.mavsdk_link import MavsdkLink
 
 pytest.importorskip("mavsdk", reason="needs mavsdk")
 pytest.importorskip("pymavlink", reason="needs pymavlink")
@@ -95,30 +99,18 @@ def test_it_takes_off_flies_and_lands_on_ardupilot_too():
 
 
 def test_nothing_on_the_port_is_told_by_its_name(monkeypatch):
-    import mintpilot.vehicle.mavsdk_link as link
-
-    monkeypatch.setattr(link, "HEARD_S", 0.5)
+    monkeypatch.setattr(connecting, "HEARD_S", 0.5)
     port = free_port()
     with pytest.raises(DeviceError, match=f"no heartbeat on udpin://127.0.0.1:{port} within 0.5 s: most likely"):
-        link.MavsdkLink(link_address(port))
+        MavsdkLink(parse_address(f"mavlink://udpin:127.0.0.1:{port}"))
 
 
 def test_a_port_that_somebody_uses_is_told_by_its_name():
-    import socket
-
-    import mintpilot.vehicle.mavsdk_link as link
-
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as taken:
         taken.bind(("127.0.0.1", 0))
         port = taken.getsockname()[1]
         with pytest.raises(DeviceError, match=f"udpin://127.0.0.1:{port} cannot be opened"):
-            link.MavsdkLink(link_address(port))
-
-
-def link_address(port: int):
-    from mintpilot.vehicle.address import parse_address
-
-    return parse_address(f"mavlink://udpin:127.0.0.1:{port}")
+            MavsdkLink(parse_address(f"mavlink://udpin:127.0.0.1:{port}"))
 
 
 @pytest.mark.slow

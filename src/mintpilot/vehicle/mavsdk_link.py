@@ -5,27 +5,20 @@ from __future__ import annotations
 import json
 import math
 import queue
-import socket
 import time
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from typing import TYPE_CHECKING, Any
 
-from mintpilot.core.errors import DeviceError, MissingPartError
 from mintpilot.core.geometry import Vec3
 from mintpilot.vehicle.address import Address
-from mintpilot.vehicle.failsafes import OUR_SYSTEM_ID
+from mintpilot.vehicle.connecting import connected
 from mintpilot.vehicle.signals import Act, Action, Did
 from mintpilot.vehicle.telemetry import Telemetry
 
 if TYPE_CHECKING:
-    from mavsdk.mavsdk import Mavsdk
     from mavsdk.system import System
 
-HEARD_S = 10.0
-"""Longest wait for the first heartbeat, seconds."""
-OUR_COMPONENT_ID = 191
-"""On-board computer."""
 RATES_HZ = {0: 2.0, 30: 10.0, 32: 20.0, 33: 5.0, 245: 2.0, 147: 1.0, 242: 0.5, 1: 2.0, 49: 0.5}
 """Message id → how often it is asked for: ArduPilot sends nothing unasked. HEARTBEAT, ATTITUDE, LOCAL_POSITION_NED,
 GLOBAL_POSITION_INT, EXTENDED_SYS_STATE, BATTERY_STATUS, HOME_POSITION, SYS_STATUS, GPS_GLOBAL_ORIGIN."""
@@ -60,7 +53,7 @@ class MavsdkLink:
         self._answers: queue.SimpleQueue[Did] = queue.SimpleQueue()
         self._workers = ThreadPoolExecutor(2, thread_name_prefix="mavlink-command")
         self._streams = False
-        self._mavsdk, self._system = _connected(address)
+        self._mavsdk, self._system = connected(address)
         self._system_id = int(self._system.get_system_id())
         self._open_plugins(self._system)
         self._subscribe()
@@ -217,48 +210,3 @@ class MavsdkLink:
             return str(error)
         result = int(json.loads(answer.fields_json).get("result", 4))
         return "" if result == 0 else _RESULTS.get(result, f"result {result}")
-
-
-def _connected(address: Address) -> tuple[Mavsdk, System]:
-    """The library with an open connection, and the autopilot at its other end."""
-    try:
-        from mavsdk.logging import log_subscribe
-        from mavsdk.mavsdk import Configuration, Mavsdk
-    except ImportError:
-        raise MissingPartError("flying needs MAVSDK; install it: pip install 'mintpilot[vehicle]'") from None
-    _check_port(address)
-    log_subscribe(lambda *_: True)  # what it has to say reaches the person as errors
-    mavsdk = Mavsdk(Configuration.create_manual(OUR_SYSTEM_ID, OUR_COMPONENT_ID, True))
-    try:
-        mavsdk.add_any_connection(address.connection)
-    except Exception as error:
-        mavsdk.destroy()
-        raise _closed(address, str(error)) from None
-    system = mavsdk.first_autopilot(HEARD_S)
-    if system is None:
-        mavsdk.destroy()
-        cause = "the autopilot sends to another port" if address.listens else "nobody answers there"
-        raise DeviceError(
-            f"no heartbeat on {address.connection} within {HEARD_S:g} s: most likely {cause}, or it is switched off; "
-            "compare the address with the one that the autopilot (or its router) is set to"
-        )
-    return mavsdk, system
-
-
-def _check_port(address: Address) -> None:
-    """The library shares a port with whoever has it already, and then hears nothing: that must be told before."""
-    transport, _, place = address.connection.partition("://")
-    host, _, port = place.rpartition(":")
-    if not address.listens:
-        return
-    kind = socket.SOCK_DGRAM if transport == "udpin" else socket.SOCK_STREAM
-    try:
-        with socket.socket(socket.AF_INET, kind) as probe:
-            probe.bind((host, int(port)))
-    except OSError as error:
-        raise _closed(address, error.strerror or str(error)) from None
-
-
-def _closed(address: Address, why: str) -> DeviceError:
-    cause = "another program (a ground station, an earlier run) uses it, or it does not exist"
-    return DeviceError(f"{address.connection} cannot be opened ({why}): most likely {cause}")

@@ -57,6 +57,8 @@ def prepare(
     heard = link.telemetry
     _wait(lambda: heard.health.local_position and heard.ned_m is not None, POSITION_S, sleep)
     _wait(lambda: heard.origin is not None, ORIGIN_S if georeference is None else POSITION_S, sleep)
+    if georeference is not None:
+        _wait(lambda: heard.health.global_position and heard.health.home, POSITION_S, sleep)
     autopilot = heard.autopilot or Autopilot.PX4
     checks = [_link(autopilot), _position(heard)]
     frame = frame_of(heard, envelope, heading_rad, georeference)
