@@ -89,7 +89,8 @@ def fly(flavour: Flavour, fault: str) -> Row:
             double.switch_on(Fault(fault))
         address = f"mavlink://udpin:127.0.0.1:{port}"
         words = ["run", str(MISSION), "--vehicle", address, "--operator", "scripted", "--seed", "0", "--json"]
-        program = [sys.executable, "-m", "mintpilot.cli.main", *words, "--out", str(Path(folder) / "run")]
+        start = "from mintpilot.cli.main import main; raise SystemExit(main())"
+        program = [sys.executable, "-c", start, *words, "--out", str(Path(folder) / "run")]
         with subprocess.Popen(program, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True) as mission:
             _wait(lambda: _set_out(double.state()) or mission.poll() is not None)
             time.sleep(0 if early else BEFORE_S)

@@ -19,7 +19,7 @@ from mintpilot.vehicle.telemetry import Telemetry
 if TYPE_CHECKING:
     from mavsdk.system import System
 
-RATES_HZ = {0: 2.0, 30: 10.0, 32: 20.0, 33: 5.0, 245: 2.0, 147: 1.0, 242: 0.5, 1: 2.0, 49: 0.5}
+RATES_HZ = {0: 4.0, 30: 10.0, 32: 20.0, 33: 5.0, 245: 2.0, 147: 1.0, 242: 0.5, 1: 2.0, 49: 0.5}
 """Message id → how often it is asked for: ArduPilot sends nothing unasked. HEARTBEAT, ATTITUDE, LOCAL_POSITION_NED,
 GLOBAL_POSITION_INT, EXTENDED_SYS_STATE, BATTERY_STATUS, HOME_POSITION, SYS_STATUS, GPS_GLOBAL_ORIGIN."""
 MESSAGES = (

@@ -11,8 +11,9 @@ from mintpilot.vehicle.signals import Changed, Mode, Seen
 SILENT_S = 1.6
 """Nothing heard for so long: the link is lost, seconds. The position alone comes 20 times a second."""
 BEATS = 3.6
-"""So many heartbeats missing one after the other: the link is lost."""
+"""So many heartbeats missing one after the other: the link is lost ..."""
 FASTEST_BEAT_S = 0.5
+"""... but not because of a faster beat than this, seconds: packets are lost, too."""
 STALE_S = 0.6
 """A position older than this is none, seconds."""
 JUMP_M = 1.0
