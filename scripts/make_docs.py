@@ -37,10 +37,12 @@ COMMANDS = (
     "bench boxes",
     "bench gaps",
     "bench language",
+    "bench trust",
     "bench report",
     "bench export",
     "understand answer",
     "export",
+    "sim serve",
 )
 HEAD = """# The command line
 

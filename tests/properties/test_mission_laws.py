@@ -293,7 +293,7 @@ class Mission(RuleBasedStateMachine):
     @precondition(lambda self: not self.calm)
     @rule(order=st.sampled_from(Order))
     def an_order(self, order: Order) -> None:
-        before, grounded = self.moving, self.state.grounded
+        before, grounded = self.moving, self.state.grounded and not self.ended
         self.feed(Ordered(time_s=self.time_s, order=order))
         self.holds = order is Order.HOLD and not self.ended and not grounded
         if grounded:

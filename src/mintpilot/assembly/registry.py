@@ -66,7 +66,7 @@ BUILT_IN: Final = MappingProxyType(
                 "picture": "mintpilot.frames.single:SinglePicture",
                 "bag": "mintpilot.frames.bags:RosBag",
                 "realsense": "mintpilot.frames.realsense:RealSense",
-                "sim": "mintpilot.simulation.frame_source:SimulatedPictures",
+                "sim": "mintpilot.simulation.picture_server:simulated",
             }
         ),
         "language": MappingProxyType(

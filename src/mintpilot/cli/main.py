@@ -15,6 +15,7 @@ from mintpilot.cli.bench import bench
 from mintpilot.cli.exits import EPILOGUE, ExitCode, fail, guarded
 from mintpilot.cli.exporting import export
 from mintpilot.cli.interrupts import listen
+from mintpilot.cli.simulating import sim
 from mintpilot.cli.understand_answer import answer
 from mintpilot.cli.understand_instruction import instruction
 
@@ -415,6 +416,7 @@ def replay(
 
 
 app.command(bench)
+app.command(sim)
 app.command(
     export,
     help_epilogue=examples(

@@ -203,12 +203,13 @@ class Situation:
     confirmed: frozenset[str]
     """Ids of obstacle gaps that got an explicit yes."""
     withdrawn: frozenset[str]
-    """Ids of queries answered UNSURE: not to be asked again."""
+    """What is not to be asked again: see `mintpilot.core.query.is_refused`."""
     asked: tuple[Evidence, ...]
     """Queries that were answered, with the answer, oldest first."""
     silent: bool
     """True after a time-out: no more questions."""
     settings: AskingSettings
+    """Its ``max_questions`` is what is left of the budget."""
     metric: ImpactMetric
     objective: QueryObjective
     proposer: Proposer | None = None
