@@ -29,7 +29,7 @@ from mintpilot.conformance.vehicle_double.serving import DoubleSetup, DoubleStat
 from mintpilot.mission_file.reader import read_mission
 
 MISSION = ROOT / "examples" / "medicine.yaml"
-BEFORE_S = 3.0
+BEFORE_S = 1.0
 """The fault comes so long after the drone has set out."""
 LONGEST_S = 150.0
 STILL_MPS = 0.2
