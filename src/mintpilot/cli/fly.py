@@ -42,6 +42,8 @@ class FlightOptions:
     """In which questions are asked; None: as the mission file says."""
     perception: str | None = None
     """What makes objects of pictures, by name; None: as the mission file says."""
+    accept_failsafes: bool = False
+    """Fly a real vehicle whose autopilot's fail-safes are not as they should be."""
 
 
 def fly(path: Path, options: FlightOptions) -> ExitCode:
@@ -67,7 +69,7 @@ def fly(path: Path, options: FlightOptions) -> ExitCode:
         try:
             record = run_mission(
                 path,
-                operator=_operator(options.operator, errors, narrator),
+                operator=_operator(options.operator, errors, narrator, real=options.vehicle.startswith("mavlink:")),
                 vehicle=options.vehicle,
                 strategy=options.strategy,
                 strategy_arguments=arguments,
@@ -77,6 +79,7 @@ def fly(path: Path, options: FlightOptions) -> ExitCode:
                 llm=options.llm,
                 lang=options.lang,
                 perception=options.perception,
+                accept_failsafes=options.accept_failsafes,
                 briefs=_somebody(errors) and options.operator != "scripted",
             )
         except KeyboardInterrupt:
@@ -99,8 +102,15 @@ def _somebody(console: Console) -> bool:
     return sys.stdin is not None and sys.stdin.isatty() and console.is_terminal
 
 
-def _operator(choice: str | None, console: Console, narrator: Narrator) -> Callable[[Talk], Operator] | str:
+def _operator(
+    choice: str | None, console: Console, narrator: Narrator, *, real: bool
+) -> Callable[[Talk], Operator] | str:
     """What makes the person at the terminal an operator, or the name of the scripted one."""
+    if choice is None and not _somebody(console) and real:
+        raise InputError(
+            "a real vehicle needs somebody who answers and can call it back: use --operator terminal or console "
+            "(--operator scripted is for the vehicle double)"
+        )
     if choice == "scripted" or (choice is None and not _somebody(console)):
         return "scripted"
     if sys.stdin is None:

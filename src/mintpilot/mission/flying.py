@@ -35,7 +35,7 @@ def next_leg(t: Transition) -> None:
         t.request(Purpose.LEG, plan.legs[t.state.leg])
         return
     done = Ending(outcome=Outcome.SUCCESS, reason="Every stop was reached.")
-    if t.state.is_down(Link.OPERATOR):
+    if t.state.is_down(Link.OPERATOR) or t.state.setup.lands:
         t.set(ending=done)
         t.redirect(Goal.RETURN)
         return
@@ -95,6 +95,12 @@ def fulfilled(t: Transition) -> None:
     next_leg(t)
 
 
+def done_by_hand(t: Transition) -> None:
+    """A person does what the stop is for: it counts as done, and what is next is thought of after that."""
+    finished = t.beliefs.finished | {_leg(t).stop.id}
+    t.set(beliefs=replace(t.beliefs, finished=finished), plan=None)
+
+
 def watch(t: Transition, event: MapObserved) -> None:
     """Looks at what a new map says of the flight: brakes where the way ahead is lost or something new is uncertain."""
     motion = t.state.motion
@@ -145,6 +151,10 @@ def no_way_back(t: Transition, decision: RefuseFlight) -> None:
         proceed_back(t)
         return
     t.note("no-way-back", decision.reason)
+    if t.state.setup.lands and t.state.goal is Goal.RETURN:
+        t.redirect(Goal.LAND)
+        proceed_back(t)
+        return
     t.end("It holds where it is.")
 
 
@@ -155,7 +165,7 @@ def proceed_back(t: Transition) -> None:
 
 def there(t: Transition) -> None:
     """At the start, or above the place to land at."""
-    if t.state.goal is Goal.LAND or t.state.lands:
+    if t.state.goal is Goal.LAND or t.state.lands or t.state.setup.lands:
         t.set(goal=Goal.LAND)
         t.descend()
     else:

@@ -70,6 +70,8 @@ class Setup:
     """True where the first map is made by a survey flight."""
     simulated: bool = False
     """True in a simulator only: baselines may then fly what is not known to be passable."""
+    lands: bool = False
+    """True for a real vehicle: however the mission ends, it returns if it can, and lands."""
     briefing: Briefing | None = None
     """What is shown before take-off and must be answered with an explicit yes; None: it takes off at once."""
 
