@@ -10,7 +10,7 @@ from mintpilot.core.gap import Belief
 from mintpilot.core.mission import AskingSettings
 from mintpilot.core.plan import Plan
 from mintpilot.core.tree import Certificate, Mint, StopReason
-from mintpilot.reasoning.classes import cheapest_under, class_entropy_bits
+from mintpilot.reasoning.classes import cheapest_under, class_entropy_bits, cost_under
 from mintpilot.reasoning.situation import may_fail, succeeds
 
 _BECAUSE: Final = {
@@ -36,7 +36,17 @@ def bound_s(plan: Plan | None, mint: Mint, belief: Belief, settings: AskingSetti
         return 0.0 if np.isinf(lowest).all() else float("inf")
     if may_fail(plan, belief, settings.floor) or not succeeds(plan, mint.belief).ravel()[mint.support].all():
         return float("inf")
-    return float(max(0.0, (plan.cost_s - lowest[np.isfinite(lowest)]).max(initial=0.0)))
+    if _may_be_missed(plan, mint, belief, settings):
+        return float("inf")
+    cost = cost_under(plan, mint).ravel()[mint.support]
+    return float(max(0.0, (cost - lowest)[np.isfinite(lowest)].max(initial=0.0)))
+
+
+def _may_be_missed(plan: Plan, mint: Mint, belief: Belief, settings: AskingSettings) -> bool:
+    """Whether somebody may be in a room that the plan takes for empty, and the tree does not show what that costs."""
+    known = {g.id for g in belief.gaps} - {g.id for g in mint.belief.gaps}
+    rooms = [(gap, value) for gap, value, _ in plan.stakes if gap in plan.skips and gap in known]
+    return any(belief.probability_of(gap, value) > settings.floor for gap, value in rooms)
 
 
 def certify(
@@ -65,6 +75,11 @@ def certify(
 def _consequence(plan: Plan | None, bound: float) -> str:
     if plan is None:
         return "No safe plan is left to fly."
+    if plan.leaves_undone and np.isfinite(bound):
+        stops = "a stop" if len(plan.leaves_undone) == 1 else f"{len(plan.leaves_undone)} stops"
+        return (
+            f"The plan of {plan.cost_s:.1f} s leaves {stops} undone; no further answer would gain over {bound:.1f} s."
+        )
     if np.isinf(bound):
         return f"The plan of {plan.cost_s:.1f} s is the best that is safe, but it may not succeed."
     return f"No further answer would change the flight of {plan.cost_s:.1f} s by more than {bound:.1f} s."

@@ -11,6 +11,7 @@ tree branches on, never with all gaps: of thirty, those on which no plan relies 
 from __future__ import annotations
 
 import heapq
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from mintpilot.core.errors import MissionError
@@ -99,7 +100,7 @@ class _Growth:
         if pair not in self.distances:
             self.distances[pair] = self.metric.divergence(best.path_m, sure.path_m)
         node.divergence_m = self.distances[pair]
-        if sure.cost_s - best.cost_s > self.settings.delta_c_s + TOLERANCE:
+        if _dearest_s(sure, node.given, self.gaps) - _least_s(best, node.given) > self.settings.delta_c_s + TOLERANCE:
             return False
         if self.settings.rule is CriticalityRule.REGRET:
             return True
@@ -145,3 +146,16 @@ class _Growth:
 def _leaf(node: NodeDraft, reason: LeafReason, plan: Plan | None) -> list[NodeDraft]:
     node.leaf, node.plan = reason, plan
     return []
+
+
+def _least_s(plan: Plan, given: Assumptions) -> float:
+    """Cost of a plan where all that is open turns out well: flight, and what it surely leaves undone, seconds."""
+    possible = dict(given.items)
+    stakes = (price for gap, value, price in plan.stakes if possible.get(gap) == frozenset({value}))
+    return plan.cost_s + plan.undone_s + sum(stakes)
+
+
+def _dearest_s(plan: Plan, given: Assumptions, gaps: Mapping[str, KnowledgeGap]) -> float:
+    """Cost of a plan where all that is open turns out badly: flight, and all that it may leave undone, seconds."""
+    stakes = (p for gap, value, p in plan.stakes if gap not in gaps or value in given.possible(gaps[gap]))
+    return plan.cost_s + plan.undone_s + sum(stakes)
