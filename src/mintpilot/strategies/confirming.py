@@ -11,7 +11,7 @@ from mintpilot.core.query import Literal, Query, Saying, SayingKind
 from mintpilot.core.tolerances import TOLERANCE
 from mintpilot.core.tree import Mint, ScoredQuery, StopReason
 from mintpilot.reasoning.safety import unknown_regions
-from mintpilot.strategies.flying import cautious_plan, expected_cost_s, fly, questions_left
+from mintpilot.strategies.flying import cautious_plan, cost_if_flown_s, fly, questions_left
 
 MAX_CONFIRMATIONS = 50
 """Bound on the answers that are counted on in a row."""
@@ -27,8 +27,8 @@ def confirm_or_avoid(situation: Situation, mint: Mint, plan: Plan, reason: StopR
     if not doubtful:
         return fly(situation, mint, plan, reason)
     around = cautious_plan(situation)
-    done_s = expected_cost_s(situation, mint, plan)
-    saving_s = (expected_cost_s(situation, mint, around) - done_s) if around else settings.failure_price_s - plan.cost_s
+    done_s = cost_if_flown_s(situation, plan)
+    saving_s = (cost_if_flown_s(situation, around) - done_s) if around else settings.failure_price_s - plan.cost_s
     if around is not None and saving_s <= settings.delta_c_s + TOLERANCE:
         return fly(situation, mint, around, StopReason.GOOD_FOR_ALL)
     needed = {g: confirmations(belief.probability_of(g, PASSABLE), situation) for g in doubtful}
