@@ -150,8 +150,8 @@ def _weighed(stop: Stop, task: Task, findings: Findings, prices: Prices, belief:
     gap = next(gap for gap in findings.gaps if gap.id == stop.gap)
     chance = belief.probability_of(gap.id, PRESENT) if belief else gap.prior[gap.values.index(PRESENT)]
     price_s = prices.usual_s if prices.people_s is None else prices.people_s
-    step = task.step_for(0).n
-    return replace(stop, price_s=price_s, chance=chance, step=step, text=f"look into {gap.description}")
+    seek = task.step_for(0).n
+    return replace(stop, price_s=price_s, chance=chance, step=seek, text=f"look into {gap.description}")
 
 
 def told_apart(gaps: Sequence[KnowledgeGap], start_m: Vec3) -> list[KnowledgeGap]:
