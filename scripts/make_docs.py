@@ -5,6 +5,9 @@ python scripts/make_docs.py
 
 from __future__ import annotations
 
+import ast
+import inspect
+import itertools
 import json
 import os
 import subprocess
@@ -14,7 +17,10 @@ from typing import Any
 
 from mintpilot.mission_file.reader import json_schema
 from mintpilot.mission_file.schema import MissionFile
+from mintpilot.simulation.scenarios.fire_warehouse import FireWarehouseParameters
+from mintpilot.simulation.scenarios.medicine_boxes import MedicineBoxesParameters
 
+GENERATORS = (("fire-warehouse", FireWarehouseParameters), ("medicine-boxes", MedicineBoxesParameters))
 DOCS = Path(__file__).parents[1] / "docs"
 SCHEMA = MissionFile.model_json_schema()
 DEFINITIONS = SCHEMA["$defs"]
@@ -31,8 +37,12 @@ COMMANDS = (
     "bench boxes",
     "bench gaps",
     "bench language",
+    "bench trust",
     "bench report",
+    "bench export",
     "understand answer",
+    "export",
+    "sim serve",
 )
 HEAD = """# The command line
 
@@ -73,6 +83,7 @@ TITLES = {
     "SceneWorld": "world by scene",
     "MapWorld": "world by map",
     "SeenWorld": "world by what was seen",
+    "GeoreferenceSpec": "georeference",
     "SceneSpec": "scene",
     "KeepAwaySpec": "distance to be kept",
     "SolidSpec": "solid",
@@ -125,7 +136,22 @@ def mission_page() -> str:
         definition = DEFINITIONS[name]
         parts.append(f"## {TITLES[name]}\n\n{definition['description']}\n\n{_table(definition)}")
         waiting += _named(definition["properties"])
+        if name == "ScenarioWorld":
+            parts += [_parameters(*generator) for generator in GENERATORS]
     return "\n".join(parts)
+
+
+def _parameters(scenario: str, kind: type) -> str:
+    """The parameters of a generator: names and defaults, and the strings that stand below them in the source."""
+    (body,) = ast.parse(inspect.getsource(kind)).body
+    assert isinstance(body, ast.ClassDef)
+    lines = [f"### Parameters of {scenario}\n", "| key | default | meaning |", "|---|---|---|"]
+    for field, below in itertools.pairwise(body.body):
+        if isinstance(field, ast.AnnAssign) and isinstance(below, ast.Expr):
+            meaning = " ".join(ast.literal_eval(below.value).split())
+            default = getattr(kind(), ast.unparse(field.target))
+            lines.append(f"| `{ast.unparse(field.target)}` | `{default:.4g}` | {meaning} |")
+    return "\n".join(lines) + "\n"
 
 
 def _named(schema: object) -> list[str]:

@@ -9,7 +9,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from assembly.vision_server import VisionServer, naming
 from frames.recordings import BLOCKS, poses, save_folder, views
+from frames.test_bags import write_bag
 from mintpilot import plan_mission
 from mintpilot.assembly.seeing import see
 from mintpilot.assembly.sources import open_source
@@ -122,3 +124,28 @@ def test_things_on_a_real_table_are_found_whole(number: int) -> None:
 
 def found(report, places) -> int:  # type: ignore[no-untyped-def]
     return sum(any(math.dist(o.position_m, p) < 0.15 for o in report.objects) for p in places)
+
+
+def test_from_a_bag_to_the_question_with_a_model_that_sees(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("rosbags", reason="needs rosbags")
+    eyes = VisionServer(naming(lambda *_: "medicine box"))
+    monkeypatch.setenv("MINTPILOT_VLM_URL", eyes.url)
+    monkeypatch.setenv("MINTPILOT_VLM_MODEL", "eyes")
+    bag = write_bag(tmp_path / "bag", mcap=True)
+    try:
+        report = report_on(
+            bag, namers=("geometry", "vision"), instruction="pick up the medicine box", out=tmp_path / "seen"
+        )
+    finally:
+        eyes.shut_down()
+    (gap,) = [gap for gap in report.gaps if gap.kind == "target"]
+    assert len(gap.candidates) == len(BLOCKS)
+    assert all("medicine box" in words for words in gap.candidates.values())
+    mission = tmp_path / "mission.yaml"
+    mission.write_text(
+        "mintpilot: 1\nname: seen\ninstruction: pick up the medicine box\nworld: {seen: seen}\n"
+        "goals:\n  - {action: pick, phrase: the medicine box}\nvehicle: {radius_m: 0.15}\n"
+    )
+    planned = plan_mission(mission)
+    assert planned.query is not None
+    assert set(planned.gaps[0].values) == set(gap.candidates)

@@ -82,6 +82,19 @@ def test_finished_trials_are_never_flown_again_and_lost_ones_are(folder: Path) -
     assert len(read_records(folder)[0]) == 9
 
 
+def test_one_method_alone_is_flown_and_the_rest_stays_for_later(tmp_path: Path) -> None:
+    config = experiment("passive-risky", "passive-conservative", trials=1)
+    alone = RunOptions(folder=tmp_path / "r", jobs=1, only=frozenset({"passive-risky"}))
+    assert run_experiment(config, alone, quiet).trials == 1
+    trials, worlds = read_records(tmp_path / "r")
+    assert [t.method for t in trials] == ["passive-risky"]
+    assert len(worlds) == 1
+    rest = run_experiment(config, RunOptions(folder=tmp_path / "r", jobs=1), quiet)
+    assert (rest.trials, rest.before, rest.done) == (2, 1, 1)
+    with pytest.raises(UnknownNameError, match="Did you mean 'passive-risky'"):
+        run_experiment(config, RunOptions(folder=tmp_path / "r", only=frozenset({"passive-risk"})), quiet)
+
+
 def test_a_folder_of_something_else_is_refused(folder: Path) -> None:
     config = read_config(folder)
     with pytest.raises(RecordError, match=r"another experiment \(it differs in seed\).*--out"):

@@ -10,6 +10,8 @@ import pytest
 from rich.console import Console
 from tests.assembly.llm_server import LlmServer
 
+from assembly.vision_server import VisionServer, naming
+from mintpilot.assembly.perceiving import vision_namer
 from mintpilot.assembly.registry import load, names
 from mintpilot.assembly.talk import Talk
 from mintpilot.conformance import (
@@ -67,7 +69,13 @@ def test_perceptions(name):
 def test_namers(name):
     if name == "ocr":
         pytest.importorskip("rapidocr_onnxruntime", reason="needs rapidocr-onnxruntime")
-    check_namer(load("namer", name))
+    if name != "vision":
+        check_namer(load("namer", name))
+        return
+    server = VisionServer(naming(lambda *_: "box"))
+    environment = {"MINTPILOT_VLM_URL": server.url, "MINTPILOT_VLM_MODEL": "eyes"}
+    check_namer(lambda: vision_namer(environment=environment))
+    server.shut_down()
 
 
 def test_recordings_are_frame_sources(tmp_path):

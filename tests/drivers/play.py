@@ -80,6 +80,7 @@ def told(situation: Situation, query: Query, answer: Answer | Reply, attempts: t
         withdrawn=after.withdrawn,
         asked=after.asked,
         silent=after.silent,
+        settings=replace(situation.settings, max_questions=max(0, situation.settings.max_questions - 1)),
     )
 
 

@@ -52,6 +52,13 @@ def test_two_that_agree_are_surer_than_one_and_two_that_differ_less_sure() -> No
     assert max(g.probability for g in fused([can, cup])) < one
 
 
+def test_who_says_box_speaks_for_the_medicine_box_too() -> None:
+    box, medicine = (NameGuess(label="box", probability=0.8),), (NameGuess(label="medicine box", probability=0.7),)
+    best = fused([box, medicine])[0]
+    assert best.label == "medicine box"
+    assert best.probability > 0.9
+
+
 def test_text_on_a_thing_becomes_a_name_and_orders_written_there_do_not() -> None:
     block = Block(lo_m=(2.0, -0.4, 0.0), hi_m=(2.6, 0.4, 0.6), colour=(0.8, 0.8, 0.8))
 

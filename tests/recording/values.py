@@ -18,6 +18,7 @@ from hypothesis.extra import numpy as npst
 from mintpilot.core.errors import MintPilotError
 from mintpilot.core.gap import Assumptions, Belief, Candidate, CorrelationGroup, GapKind, Joint, KnowledgeGap
 from mintpilot.core.geometry import Box, GridFrame
+from mintpilot.core.georeference import Georeference
 from mintpilot.core.mission import AskingSettings
 from mintpilot.core.observation import CameraModel, Frame, RegionKind
 from mintpilot.core.plan import Plan, VehicleLimits
@@ -129,6 +130,7 @@ OWN: dict[object, st.SearchStrategy[Any]] = {
     Frame: frames(),
     CorrelationGroup: groups(),
     Assumptions: st.dictionaries(TEXTS, st.sets(TEXTS)).map(Assumptions.of),
+    Georeference: st.floats(-90, 90).map(lambda a: Georeference(latitude_deg=a, longitude_deg=2 * a)),
     VehicleLimits: st.floats(0.1, 9).map(lambda r: VehicleLimits(radius_m=r)),
     AskingSettings: st.integers(0, 50).map(lambda n: AskingSettings(max_questions=n, objective="ec2")),
 }

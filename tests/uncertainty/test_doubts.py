@@ -34,6 +34,11 @@ def test_the_surer_name_is_likelier_and_weak_names_leave_none_of_them() -> None:
     assert found["thing-1"] > found["thing-2"]
     weak = referents("can", [thing(1, can=0.2)])
     assert weak.none_of_them > weak.things[0][1]
+    alike = dict(referents("can", [thing(1, can=0.99), thing(2, can=0.95)], unseen=0.0).things)
+    assert alike["thing-2"] > 0.45, "two things that are surely cans stay a question"
+    assert referents("can", [thing(1, can=0.76)], unseen=0.1).none_of_them == pytest.approx(0.9 * 0.24)
+    medicine = referents("box", [thing(1, label="medicine box"), thing(2, label="barrel")])
+    assert [i for i, _ in medicine.things] == ["thing-1"]
     sure = referents("box", [thing(1, label="box")])
     assert sure.none_of_them < 0.01
 

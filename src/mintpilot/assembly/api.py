@@ -114,6 +114,7 @@ def run_mission(
     llm: str | LanguageModel | None = None,
     lang: str | None = None,
     perception: str | None = None,
+    briefs: bool = False,
 ) -> MissionRecord:
     """Flies a mission and keeps what happened.
 
@@ -132,6 +133,8 @@ def run_mission(
             the file says, and that is none.
         lang: in which questions are asked; default: as the file says.
         perception: registered name of what makes objects of pictures; default: as the file says.
+        briefs: whether the operator is asked go or no-go before take-off. One always is where a language model read the
+            instruction.
 
     Returns:
         The record. How the mission ended is `MissionRecord.outcome`; an ending short of success is no exception.
@@ -147,6 +150,8 @@ def run_mission(
         strategy_arguments=_arguments(file, strategy, strategy_arguments),
         vehicle=_vehicle(vehicle),
         perception=perception or file.perception.use,
+        briefs=briefs,
+        namers=tuple(file.perception.namers) if perception in (None, file.perception.use) else (),
     )
     with talk_for(file.language, llm=llm, lang=lang) as talk:
         world = build_world(file, base=folder, seed=seed, parse=talk.parse)

@@ -9,6 +9,8 @@ from enum import StrEnum
 
 import numpy as np
 
+from mintpilot.assembly.briefing import briefing_of
+from mintpilot.assembly.perceiving import Seeing, make_perception, remarks_of
 from mintpilot.assembly.registry import load
 from mintpilot.assembly.strategies import Argument, make_objective, make_strategy, strategy_label
 from mintpilot.assembly.talk import Talk
@@ -53,7 +55,11 @@ class Choices:
     vehicle: VehicleChoice = VehicleChoice.MUJOCO
     planner: str = "grid"
     perception: str = "geometric"
+    namers: tuple[str, ...] = ()
+    """Who names what perception finds; empty: its own way."""
     camera_size: tuple[int, int] = (320, 240)
+    briefs: bool = False
+    """Whether go or no-go is asked before take-off. It always is where a language model read the instruction."""
 
 
 def deliberation_parts(world: World, choices: Choices, talk: Talk | None = None) -> DeliberationParts:
@@ -126,6 +132,7 @@ class _Components(AbstractContextManager[MissionComponents]):
     ) -> None:
         self._world, self._choices, self._operators, self._recorder = world, choices, operators, recorder
         self._talk, self._digests = talk, digests
+        self._perception: Perception | None = None
         self._stack = ExitStack()
 
     def __enter__(self) -> MissionComponents:
@@ -134,7 +141,9 @@ class _Components(AbstractContextManager[MissionComponents]):
         if choices.vehicle is VehicleChoice.MUJOCO and not world.is_map:
             simulator = MujocoSimulator(world.scene, world.rules, seed=world.seed, camera_size=choices.camera_size)
             self._stack.callback(simulator.close)
-            perception: Perception = load("perception", choices.perception)()
+            wanted = tuple(dict.fromkeys(g.reference.label for g in world.task.subgoals if g.reference.label))
+            perception = make_perception(Seeing(perception=choices.perception, namers=choices.namers, wanted=wanted))
+            self._perception = perception
             builder = map_builder(world)
             surveys = world.mission.survey is not None
             if surveys:
@@ -159,11 +168,19 @@ class _Components(AbstractContextManager[MissionComponents]):
     def __exit__(self, *_: object) -> None:
         self._stack.close()
 
+    def _remarks(self) -> tuple[str, ...]:
+        seen = () if self._perception is None else tuple(remarks_of(self._perception))
+        return (*self._talk.take_remarks(), *seen)
+
     def _made(
         self, simulator: MujocoSimulator | KinematicSimulator, source: MapSource, *, surveys: bool, watch_map: bool
     ) -> MissionComponents:
+        parts = deliberation_parts(self._world, self._choices, self._talk)
+        briefed = self._choices.briefs or self._world.task.needs_confirmation
+        known = None if surveys else self._world.map
         return MissionComponents(
-            parts=deliberation_parts(self._world, self._choices, self._talk),
+            parts=parts,
+            briefing=briefing_of(parts, known, lang=self._talk.lang) if briefed else None,
             vehicle=simulator,
             map_source=source,
             operators=self._operators,
@@ -171,7 +188,7 @@ class _Components(AbstractContextManager[MissionComponents]):
             begin_task=simulator.begin_mission,
             judge=simulator,
             improve=self._talk.improve,
-            remarks=self._talk.take_remarks,
+            remarks=self._remarks,
             surveys=surveys,
             simulated=True,
             watch_map=watch_map,

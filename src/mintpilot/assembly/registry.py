@@ -56,6 +56,7 @@ BUILT_IN: Final = MappingProxyType(
             {
                 "geometry": "mintpilot.perception.geometry_namer:GeometryNamer",
                 "ocr": "mintpilot.perception.ocr_namer:OcrNamer",
+                "vision": "mintpilot.assembly.perceiving:vision_namer",
             }
         ),
         "frames": MappingProxyType(
@@ -65,7 +66,7 @@ BUILT_IN: Final = MappingProxyType(
                 "picture": "mintpilot.frames.single:SinglePicture",
                 "bag": "mintpilot.frames.bags:RosBag",
                 "realsense": "mintpilot.frames.realsense:RealSense",
-                "sim": "mintpilot.simulation.frame_source:SimulatedPictures",
+                "sim": "mintpilot.simulation.picture_server:simulated",
             }
         ),
         "language": MappingProxyType(

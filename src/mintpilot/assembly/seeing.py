@@ -2,27 +2,29 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
-from mintpilot.assembly.registry import load
+from mintpilot.assembly.perceiving import Seeing, make_perception, remarks_of
 from mintpilot.assembly.seen_report import GapSeen, SeenReport, gap_seen, report_of
-from mintpilot.core.errors import MapError, RecordError
+from mintpilot.core.errors import InputError, MapError, RecordError
 from mintpilot.core.geometry import Floats, GridFrame, Vec3
 from mintpilot.core.observation import Frame
 from mintpilot.core.plan import VehicleLimits
 from mintpilot.core.ports import FrameSource, Perception
-from mintpilot.core.semantic_map import SemanticMap
+from mintpilot.core.semantic_map import MapObject, SemanticMap
+from mintpilot.core.task import Reference
 from mintpilot.frames.aligned import AlignedFrames
 from mintpilot.language.instruction import parse_instruction
 from mintpilot.mapping.builder import MapBuilder
 from mintpilot.mapping.settings import MappingSettings
 from mintpilot.mission_file.seen_map import save_map
-from mintpilot.perception.settings import PerceptionSettings
 from mintpilot.uncertainty.doubts import doubtful_people, referents, said_of
 from mintpilot.uncertainty.findings import find_gaps
+from mintpilot.uncertainty.things import stands_for
 
 REACH_M = 8.0
 """Depth beyond this places no surface."""
@@ -40,6 +42,7 @@ def see(
     *,
     name: str,
     perception: str = "segments",
+    namers: Sequence[str] = (),
     instruction: str | None = None,
     out: Path | None = None,
 ) -> SeenReport:
@@ -49,6 +52,7 @@ def see(
         source: of the pictures.
         name: what the report calls it.
         perception: registered name of what makes objects of pictures.
+        namers: registered names of who names what is found; empty: the perception's own way.
         instruction: gaps are then those that bear on it, too.
         out: folder that becomes a world for missions (``world: {seen: DIR}``); None: nothing is written.
 
@@ -61,10 +65,13 @@ def see(
     if not frames:
         raise MapError(f"'{name}' has no usable frame: {' '.join(aligned.warnings)}")
     setting = aligned.setting
-    seeing = _perception(perception, setting.floor_m)
+    wanted = wanted_nouns(instruction)
+    seeing = make_perception(
+        Seeing(perception=perception, namers=tuple(namers), wanted=wanted, floor_m=setting.floor_m)
+    )
     map_ = _mapped(frames, seeing, setting.floor_m)
     x, y, z = (float(v) for v in frames[0].world_from_camera[:3, 3])
-    warnings = [*aligned.warnings, *_seen_nothing(map_, frames)]
+    warnings = [*aligned.warnings, *remarks_of(seeing), *_seen_nothing(map_, frames)]
     gaps, problems = gaps_of(map_, instruction, start_m=(x, y, z))
     report = report_of(
         name=name,
@@ -85,6 +92,17 @@ def see(
     return report
 
 
+def wanted_nouns(instruction: str | None) -> tuple[str, ...]:
+    """The nouns of the things that an instruction is about, as far as it is understood."""
+    if instruction is None:
+        return ()
+    try:
+        task = parse_instruction(instruction, home_m=(0.0, 0.0, 0.0))
+    except InputError:
+        return ()
+    return tuple(dict.fromkeys(g.reference.label for g in task.subgoals if g.reference.label))
+
+
 def gaps_of(map_: SemanticMap, instruction: str | None, *, start_m: Vec3) -> tuple[list[GapSeen], list[str]]:
     """What may be a person, what is not known that bears on an instruction, and what it speaks of in vain."""
     gaps = [gap_seen(gap, question=f"Is that a person: {gap.description}?") for gap in doubtful_people(map_.objects)]
@@ -102,7 +120,7 @@ def gaps_of(map_: SemanticMap, instruction: str | None, *, start_m: Vec3) -> tup
             continue
         wanted = {a.value for a in meant.attributes if a.name in ("", "colour", "size")}
         fitting = [o for o in map_.objects if not _contradicts(o.values("colour") | o.values("size"), wanted)]
-        found = referents(meant.label, fitting)
+        found = referents(_called(meant, map_.objects), fitting)
         named = {o.id: said_of(o) for o in map_.objects}
         values = {i: round(p, 4) for i, p in found.things} | {
             "none of them": round(found.none_of_them, 4),
@@ -121,6 +139,13 @@ def gaps_of(map_: SemanticMap, instruction: str | None, *, start_m: Vec3) -> tup
     return gaps, list(findings.problems)
 
 
+def _called(meant: Reference, objects: Sequence[MapObject]) -> str:
+    """The name that a phrase asks for: ``medicine box`` where something may be so called, else its noun alone."""
+    whole = " ".join((*(a.value for a in meant.attributes if not a.name), meant.label))
+    named = {g.label for o in objects for g in o.names} | {o.label for o in objects}
+    return whole if any(stands_for(name, whole) for name in named) else meant.label
+
+
 _COLOURS = frozenset({"red", "orange", "yellow", "green", "blue", "purple", "white", "grey", "black", "brown"})
 _SIZES = frozenset({"small", "medium", "large"})
 
@@ -128,15 +153,6 @@ _SIZES = frozenset({"small", "medium", "large"})
 def _contradicts(known: frozenset[str], wanted: set[str]) -> bool:
     """Whether a thing is known to have another colour or size than is wanted."""
     return any(wanted & group and known & group and not (wanted & known & group) for group in (_COLOURS, _SIZES))
-
-
-def _perception(name: str, floor_m: float) -> Perception:
-    make = load("perception", name)
-    try:
-        made: Perception = make(PerceptionSettings(floor_m=floor_m))
-    except TypeError:  # a plug-in that is made without settings
-        made = make()
-    return made
 
 
 def _mapped(frames: list[Frame], perception: Perception, floor_m: float) -> SemanticMap:

@@ -37,6 +37,11 @@ def _mistakes(file: MissionFile, base: Path) -> Iterator[tuple[Place, str]]:
         *_tried(("asking", "impact_metric"), lambda: load("metric", file.asking.impact_metric)),
         *_strategy_mistakes(file),
         *_tried(("perception", "use"), lambda: load("perception", file.perception.use)),
+        *(
+            fault
+            for number, namer in enumerate(file.perception.namers)
+            for fault in _tried(("perception", "namers", number), partial(load, "namer", namer))
+        ),
         *_tried(("language", "model"), lambda: load("language", file.language.model)),
     ]
     if file.goals is None:

@@ -111,6 +111,7 @@ def _from_scenario(file: MissionFile, world: ScenarioWorld, seed: int, parse: Pa
         instruction=file.instruction,
         limits=limits,
         asking=asking_of(file) if "asking" in given else scenario.mission.asking,
+        georeference=mission_of(file, start_m=scenario.mission.start_m, volume=scenario.mission.volume).georeference,
     )
     if file.survey is not None:
         surveyed = mission_of(file, start_m=mission.start_m, volume=mission.volume)

@@ -13,6 +13,7 @@ from mintpilot.benchmark.on_ray import RayPool
 from mintpilot.benchmark.pool import ProcessPool
 from mintpilot.benchmark.records import Record, TrialRecord
 from mintpilot.benchmark.store import RecordStore, finished_in
+from mintpilot.core.errors import UnknownNameError
 
 Executor: TypeAlias = Literal["process", "ray"]
 Heard: TypeAlias = Callable[["Progress", Record], object]
@@ -46,6 +47,8 @@ class RunOptions:
     jobs: int = 2
     executor: Executor = "process"
     ray_address: str = ""
+    only: frozenset[str] = frozenset()
+    """Methods that are flown now; empty: all."""
 
 
 def run_experiment(experiment: Experiment, options: RunOptions, heard: Heard) -> Progress:
@@ -53,13 +56,21 @@ def run_experiment(experiment: Experiment, options: RunOptions, heard: Heard) ->
 
     Raises:
         RecordError: the folder cannot be used, or the disk is full. What was written is kept.
+        UnknownNameError: a method in ``only`` is not compared by this experiment.
         MissingPartError: the executor, or MuJoCo, is not installed.
         DeviceError: there is no Ray cluster at that address.
     """
+    names = {method.name for cell in experiment.cells for method in cell.methods}
+    for name in sorted(options.only - names):
+        raise UnknownNameError("method", name, sorted(names))
     with RecordStore(options.folder, experiment) as store:
         finished = finished_in(options.folder)
-        total = experiment.trials * sum(len(cell.methods) for cell in experiment.cells)
-        tasks = tasks_of(experiment, finished)
+        flown = [
+            m.name for cell in experiment.cells for m in cell.methods if not options.only or m.name in options.only
+        ]
+        total = experiment.trials * len(flown)
+        tasks = [_only(task, options.only) for task in tasks_of(experiment, finished)]
+        tasks = [task for task in tasks if task.methods or task.survey_world]
         before, done = total - sum(len(task.methods) for task in tasks), 0
         begun = time.perf_counter()
         for worker, record in _fly(experiment, options, tasks) if tasks else ():
@@ -67,6 +78,11 @@ def run_experiment(experiment: Experiment, options: RunOptions, heard: Heard) ->
             done += isinstance(record, TrialRecord)
             heard(Progress(trials=total, before=before, done=done, seconds=time.perf_counter() - begun), record)
         return Progress(trials=total, before=before, done=done, seconds=time.perf_counter() - begun)
+
+
+def _only(task: WorldTask, only: frozenset[str]) -> WorldTask:
+    """The task with those methods alone; empty: with all."""
+    return task.model_copy(update={"methods": tuple(m for m in task.methods if not only or m in only)})
 
 
 def _fly(experiment: Experiment, options: RunOptions, tasks: list[WorldTask]) -> Iterator[tuple[str, Record]]:

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Literal
 
 from cyclopts import App, Parameter
 
 from mintpilot.cli.bench_flags import BenchFlags, Flag, Json, VehicleName
+from mintpilot.cli.bench_trust import trust
 from mintpilot.cli.exits import EPILOGUE, ExitCode, guarded
 
 if TYPE_CHECKING:
@@ -23,6 +24,7 @@ bench = App(
     result_action="return_value",
 )
 
+bench.command(trust)
 _USUAL = BenchFlags()
 
 
@@ -125,6 +127,32 @@ def report(
         from mintpilot.cli.bench_run import write_page
 
         return write_page(folders, out)
+
+    return guarded(work, as_json=False, debug=debug)
+
+
+@bench.command
+def export(
+    folders: Annotated[list[Path], Parameter(negative="")],
+    /,
+    *,
+    to: Annotated[Literal["csv", "latex"], Parameter(name="--to")] = "csv",
+    out: Path | None = None,
+    debug: Flag = False,
+) -> ExitCode:
+    """The tables of those folders as CSV or LaTeX, for a paper or a notebook.
+
+    Args:
+        folders: Folders of records.
+        to: CSV with every figure, or LaTeX tables (package booktabs).
+        out: The file. Default: standard output.
+        debug: Show the traceback of an error.
+    """
+
+    def work() -> ExitCode:
+        from mintpilot.cli.bench_run import write_tables
+
+        return write_tables(folders, to, out)
 
     return guarded(work, as_json=False, debug=debug)
 

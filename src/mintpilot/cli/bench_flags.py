@@ -23,6 +23,7 @@ class BenchFlags:
     Attributes:
         seed: Of the first world; the others follow.
         strategy: One more method to compare, e.g. of a plug-in; may be given several times.
+        only: Fly and show this method alone; may be given several times. The others stay to be flown later.
         llm: Language model that may propose questions: template (none), embedded, endpoint, or one of a plug-in.
         jobs: Worker processes; with a local Ray, its workers.
         executor: Processes of this machine, or a Ray cluster.
@@ -35,6 +36,7 @@ class BenchFlags:
 
     seed: int = 0
     strategy: Annotated[list[str], Parameter(name="--strategy", negative="")] = field(default_factory=list)
+    only: Annotated[list[str], Parameter(name="--only", negative="")] = field(default_factory=list)
     llm: str = "template"
     jobs: int = 2
     executor: Literal["process", "ray"] = "process"

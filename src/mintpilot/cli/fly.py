@@ -77,6 +77,7 @@ def fly(path: Path, options: FlightOptions) -> ExitCode:
                 llm=options.llm,
                 lang=options.lang,
                 perception=options.perception,
+                briefs=_somebody(errors) and options.operator != "scripted",
             )
         except KeyboardInterrupt:
             narrator.rest()
@@ -93,10 +94,14 @@ def fly(path: Path, options: FlightOptions) -> ExitCode:
     return ExitCode.SUCCESS if record.outcome.value == "success" else ExitCode.NOT_A_SUCCESS
 
 
+def _somebody(console: Console) -> bool:
+    """Whether a person sits at the terminal."""
+    return sys.stdin is not None and sys.stdin.isatty() and console.is_terminal
+
+
 def _operator(choice: str | None, console: Console, narrator: Narrator) -> Callable[[Talk], Operator] | str:
     """What makes the person at the terminal an operator, or the name of the scripted one."""
-    somebody = sys.stdin is not None and sys.stdin.isatty() and console.is_terminal
-    if choice == "scripted" or (choice is None and not somebody):
+    if choice == "scripted" or (choice is None and not _somebody(console)):
         return "scripted"
     if sys.stdin is None:
         raise InputError("--operator terminal needs a standard input; use --operator scripted where nobody is there")

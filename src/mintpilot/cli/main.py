@@ -13,7 +13,9 @@ from rich.console import Console
 
 from mintpilot.cli.bench import bench
 from mintpilot.cli.exits import EPILOGUE, ExitCode, fail, guarded
+from mintpilot.cli.exporting import export
 from mintpilot.cli.interrupts import listen
+from mintpilot.cli.simulating import sim
 from mintpilot.cli.understand_answer import answer
 from mintpilot.cli.understand_instruction import instruction
 
@@ -220,6 +222,7 @@ def see(
     every: Annotated[int, Parameter(validator=validators.Number(gte=1))] = 1,
     longest: Annotated[int, Parameter(validator=validators.Number(gte=1))] = 200,
     perception: str = "segments",
+    namer: Annotated[list[str], Parameter(name="--namer", negative="")] = [],  # noqa: B006
     seed: Seed = None,
     out: Path | None = None,
     json: Json = False,
@@ -240,6 +243,8 @@ def see(
         every: Use each n-th frame only.
         longest: Use no more frames than this.
         perception: Who makes objects of pictures: segments, geometric, or a plug-in's.
+        namer: Who names what segments finds: geometry, ocr (text on things), vision (a vision-language model at
+            MINTPILOT_VLM_URL), or a plug-in's; may be given several times. Default: geometry.
         seed: Of simulated sources. Default: 0.
         out: Folder for map and report.
         json: Print one JSON object, and nothing else, on standard output.
@@ -260,7 +265,9 @@ def see(
         seed=seed or 0,
     )
     return guarded(
-        lambda: see_pictures(source, options, perception=perception, instruction=instruction, out=out, as_json=json),
+        lambda: see_pictures(
+            source, options, perception=perception, namers=namer, instruction=instruction, out=out, as_json=json
+        ),
         as_json=json,
         debug=debug,
     )
@@ -344,6 +351,14 @@ def replay(
 
 
 app.command(bench)
+app.command(sim)
+app.command(
+    export,
+    help_epilogue=examples(
+        "mintpilot export mission.yaml --to plan --out mission.plan",
+        "mintpilot export runs/2026-11-28T10-00-00-survey --to wpl --firmware ardupilot",
+    ),
+)
 
 understand = App(
     name="understand",

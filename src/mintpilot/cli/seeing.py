@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -14,14 +14,23 @@ if TYPE_CHECKING:
 
 
 def see_pictures(
-    where: str, options: SourceOptions, *, perception: str, instruction: str | None, out: Path | None, as_json: bool
+    where: str,
+    options: SourceOptions,
+    *,
+    perception: str,
+    namers: Sequence[str],
+    instruction: str | None,
+    out: Path | None,
+    as_json: bool,
 ) -> ExitCode:
     """Sees what a source shows, and prints what came of it."""
     from mintpilot.assembly.seeing import see
     from mintpilot.assembly.sources import open_source
 
     name = where or str(options.color)
-    report = see(open_source(where, options), name=name, perception=perception, instruction=instruction, out=out)
+    report = see(
+        open_source(where, options), name=name, perception=perception, namers=namers, instruction=instruction, out=out
+    )
     print(report.model_dump_json() if as_json else "\n".join(lines_of(report, out)))
     return ExitCode.SUCCESS
 

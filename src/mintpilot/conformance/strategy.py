@@ -13,7 +13,7 @@ from mintpilot.conformance.sample import require, sample_world
 from mintpilot.core.gap import GapKind, KnowledgeGap
 from mintpilot.core.mission import AskingSettings
 from mintpilot.core.ports import Fly, QueryObjective, QuerySituation, Strategy
-from mintpilot.core.query import Answer, Query, Reply, answer_for
+from mintpilot.core.query import Answer, Query, Reply, answer_for, is_refused
 from mintpilot.mission.deliberation import Deliberation, DeliberationParts
 from mintpilot.mission.rehearsal import Rehearsal, begin
 
@@ -147,7 +147,7 @@ def _check_doubt(strategy: Strategy, settings: AskingSettings) -> None:
         if isinstance(found.decision, Fly):
             return
         query = found.decision.scored.query
-        again = query.id in found.state.withdrawn
+        again = is_refused(query, found.state.withdrawn)
         require(not again, strategy, f"it asks '{query.id}' again, which was answered 'I do not know'")
         moment = moment.asked(found).answered(unsure)
 

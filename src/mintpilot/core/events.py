@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TypeAlias
 
+from mintpilot.core.briefing import Briefing
 from mintpilot.core.gap import CorrelationGroup, KnowledgeGap
 from mintpilot.core.inputs import Input
 from mintpilot.core.mission import Mission, Verdict
@@ -37,6 +38,8 @@ class MissionStarted:
     """Whether it is flown in a simulator."""
     surveys: bool = False
     """Whether the first map is made by a survey flight."""
+    briefing: Briefing | None = None
+    """What must be answered with yes before take-off; None: nothing."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -18,6 +18,8 @@ PASSABLE = "passable"
 BLOCKED = "blocked"
 PRESENT = "present"
 ABSENT = "absent"
+FLY = "fly"
+STAY = "stay"
 
 
 class GapKind(StrEnum):
@@ -31,6 +33,8 @@ class GapKind(StrEnum):
     """Is somebody in this place? Values: `PRESENT`, `ABSENT`."""
     VALUE = "value"
     """An ordered quantity. Values: numbers in ascending order, as text."""
+    GO = "go"
+    """May the mission be flown as it was understood? Values: `FLY`, `STAY`. Asked before take-off only."""
 
 
 _SEPARATOR = ":"

@@ -9,6 +9,7 @@ from typing import Any
 
 from mintpilot.core.errors import MissionError
 from mintpilot.core.geometry import Box, Vec3
+from mintpilot.core.georeference import Georeference
 from mintpilot.core.plan import LeftUndone, VehicleLimits
 
 
@@ -93,6 +94,9 @@ class AskingSettings:
     )
     max_questions: int = setting(20, "Budget of questions.", least=0)
     patience_s: float = setting(30.0, "How long an answer is waited for, seconds.", least=0)
+    answer_valid_s: float = setting(
+        600.0, "How long a yes for a region counts, seconds; then it is asked again.", least=0
+    )
     objective: str = setting("information-gain", "Name of the query objective.")
     max_nodes: int = setting(4096, "Bound on the tree's nodes.", least=1)
     max_joint: int = setting(65536, "Bound on the joint hypotheses held.", least=1)
@@ -149,6 +153,8 @@ class Mission:
     """For rooms that name none."""
     resolution_m: float = 0.2
     """Edge of a voxel, metres."""
+    georeference: Georeference | None = None
+    """Where the map lies on the earth; None: not known."""
     people_price_s: float | None = None
     """What leaving somebody unseen costs, seconds of flight; None: ``asking.failure_price_s``."""
     returns: ReturnRule = ReturnRule.NONE

@@ -47,6 +47,17 @@ class Namer(Protocol):
         ...
 
 
+class VisionModel(Protocol):
+    """Answers in words what a picture shows. What it says is a suggestion: geometry comes from depth alone."""
+
+    def look(self, prompt: str, picture_png: bytes, *, schema: type, timeout_s: float) -> str:
+        """The model's answer, JSON of that pydantic schema where it keeps to it; the caller checks it.
+
+        Raises `DeviceError` when there is no answer in time.
+        """
+        ...
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SourceOptions:
     """What the command line or a caller knows about the pictures. None: found out, or assumed and said."""
@@ -192,12 +203,13 @@ class Situation:
     confirmed: frozenset[str]
     """Ids of obstacle gaps that got an explicit yes."""
     withdrawn: frozenset[str]
-    """Ids of queries answered UNSURE: not to be asked again."""
+    """What is not to be asked again: see `mintpilot.core.query.is_refused`."""
     asked: tuple[Evidence, ...]
     """Queries that were answered, with the answer, oldest first."""
     silent: bool
     """True after a time-out: no more questions."""
     settings: AskingSettings
+    """Its ``max_questions`` is what is left of the budget."""
     metric: ImpactMetric
     objective: QueryObjective
     proposer: Proposer | None = None

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from itertools import combinations
@@ -10,7 +10,7 @@ from itertools import combinations
 import numpy as np
 
 from mintpilot.core.errors import MissionError
-from mintpilot.core.gap import Joint, KnowledgeGap
+from mintpilot.core.gap import GapKind, Joint, KnowledgeGap, kind_of
 from mintpilot.core.geometry import SmallInts
 from mintpilot.core.predicate import (
     Combine,
@@ -172,6 +172,29 @@ def choice(options: Sequence[Option], gaps: Iterable[KnowledgeGap]) -> Query:
     return Query(options=tuple(options), none_of_these=not covered.all())
 
 
+def topics(query: Query) -> frozenset[str]:
+    """What somebody does not know who does not know the answer (method, section 5).
+
+    Regions, rooms and values by gap id; of a target gap the attribute that was asked about: ``target:1:box/colour``.
+    """
+    return frozenset(
+        f"{x.gap}/{x.saying.name or 'which one'}" if kind_of(x.gap) is GapKind.TARGET else x.gap
+        for x in query.every_literal
+    )
+
+
+def is_refused(query: Query, withdrawn: Collection[str]) -> bool:
+    """Whether a query is not to be asked: it was withdrawn itself, or turns on something that is not known.
+
+    Args:
+        query: the query.
+        withdrawn: ids of queries, `topics`, and ids of gaps that are withdrawn altogether.
+    """
+    if not withdrawn:
+        return False
+    return query.id in withdrawn or any(name in withdrawn for name in (*query.gap_ids, *topics(query)))
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Question:
     """A query with words. The words never decide the meaning."""
@@ -305,4 +328,6 @@ __all__ = [
     "Standing",
     "answer_for",
     "choice",
+    "is_refused",
+    "topics",
 ]

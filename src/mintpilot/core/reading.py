@@ -89,6 +89,9 @@ def guarded_replies(question: Question) -> frozenset[Reply]:
     guarded: set[Reply] = set()
     for literal in question.query.literals:
         kind = kinds.get(literal.gap)
+        if kind is GapKind.GO:
+            guarded.add(Reply.YES)
+            continue
         if kind not in (GapKind.OBSTACLE, GapKind.PRESENCE):
             return frozenset((Reply.YES, Reply.NO))
         frees = PASSABLE if kind is GapKind.OBSTACLE else ABSENT

@@ -14,8 +14,8 @@ from itertools import combinations
 import numpy as np
 
 from mintpilot.core.gap import PASSABLE, PRESENT, GapKind, Joint, KnowledgeGap
-from mintpilot.core.geometry import Bools, SmallInts, Vec3, frozen
-from mintpilot.core.query import Combine, Literal, Query, Saying, SayingKind
+from mintpilot.core.geometry import SmallInts, Vec3, frozen
+from mintpilot.core.query import Combine, Literal, Query, Saying, SayingKind, is_refused
 from mintpilot.core.tree import Mint
 from mintpilot.elicitation.partitions import partition_keys
 from mintpilot.elicitation.phrasing_cost import phrasing_cost
@@ -66,19 +66,24 @@ def candidate_queries(
     Args:
         mint: the tree; only gaps that it branches on are asked about.
         start_m: where the drone is, metres.
-        refused: ids of queries not to be asked; nor are others that divide the hypotheses alike.
+        refused: what is not to be asked (`mintpilot.core.query.is_refused`); nor are queries that divide the hypotheses
+            like one that is refused itself.
     """
     support, language = mint.support, _language(mint.belief.gaps, start_m)
     most = max(1, min(MAX_QUERIES, MAX_CELLS // max(1, support.size)))
     looked_at = language.queries[: 2 * most]
     rows = language.parts(mint.belief, len(looked_at))[:, support]
-    # Of those that divide alike the first one has the least phrasing cost.
     keys = partition_keys(rows)
-    _, first, key_of = np.unique(keys, axis=0, return_index=True, return_inverse=True)
-    barred = {key_of.ravel()[i] for i, query in enumerate(looked_at) if refused and query.id in refused}
-    divides: Bools = np.any(keys, axis=1)
-    kept = sorted(i for key, i in enumerate(first.tolist()) if divides[i] and key not in barred)
-    return tuple(looked_at[i] for i in kept[:most])
+    _, key_of = np.unique(keys, axis=0, return_inverse=True)
+    kinds, divides = key_of.ravel(), np.any(keys, axis=1)
+    taken = {kinds[i] for i, query in enumerate(looked_at) if refused and query.id in refused}
+    kept: list[Query] = []
+    for i, query in enumerate(looked_at):
+        # Of those that divide alike the first one has the least phrasing cost.
+        if len(kept) < most and divides[i] and kinds[i] not in taken and not is_refused(query, refused):
+            taken.add(kinds[i])
+            kept.append(query)
+    return tuple(kept)
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,9 +9,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from mintpilot.core.errors import InputError
+from mintpilot.core.gap import GapKind, kind_of
 from mintpilot.core.inputs import Answered, OperatorInput, Ordered, QuestionShown
 from mintpilot.core.ports import Operator, TruthOracle
-from mintpilot.core.query import Answer, Order, Question, Reply, answer_for
+from mintpilot.core.query import YES_PART, Answer, Order, Question, Reply, answer_for
 
 
 @dataclass(slots=True)
@@ -121,8 +122,10 @@ class ScriptedOperator(_Script):
     def answer(self, question: Question, patience_s: float) -> Answer:
         """The true answer to the question's query (its words are not looked at), or what the rates make of it.
 
-        A query that speaks of a gap without a true value is answered UNSURE.
+        A query that speaks of a gap without a true value is answered UNSURE; a briefing before take-off with yes.
         """
+        if any(kind_of(name) is GapKind.GO for name in question.query.gap_ids):
+            return answer_for(question.query, YES_PART, text="yes")
         wrong, unsure, silent = self._rng.random(3) < (self._answer_error, self._unsure_rate, self._silence_rate)
         if silent or self._latency_s > patience_s:
             return Answer(reply=Reply.TIMEOUT, latency_s=patience_s)

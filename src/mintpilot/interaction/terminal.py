@@ -15,6 +15,7 @@ from rich.console import Console, Group
 from rich.text import Text
 
 from mintpilot.core.errors import DeviceError
+from mintpilot.core.gap import GapKind
 from mintpilot.core.inputs import Answered, MoreTimeWanted, OperatorInput, Ordered, QuestionShown
 from mintpilot.core.ports import Operator, Understand
 from mintpilot.core.query import Answer, Order, Question, Reply, Standing
@@ -227,6 +228,7 @@ class TerminalOperator(Operator):
         return tuple(
             Text(f"  {_printable(gap.description)}: x {gap.position_m[0]:.1f} m, y {gap.position_m[1]:.1f} m")
             for gap in question.gaps
+            if gap.kind is not GapKind.GO
         )
 
     def _show(self, question: Question, patience_s: float) -> None:

@@ -20,7 +20,7 @@ from urllib.parse import urlsplit
 from pydantic import BaseModel
 
 from mintpilot.core.errors import DeviceError, InputError, MintPilotError, MissingPartError, UnknownNameError
-from mintpilot.core.ports import Completion, LanguageModel
+from mintpilot.core.ports import Completion, LanguageModel, VisionModel
 from mintpilot.language.deadline import within
 
 URL_VARIABLE = "MINTPILOT_LLM_URL"
@@ -41,7 +41,7 @@ class OutputMode(StrEnum):
     """The schema is written into the prompt."""
 
 
-class EndpointModel(LanguageModel):
+class EndpointModel(LanguageModel, VisionModel):
     """A chat model behind an OpenAI-compatible address.
 
     Args:
@@ -87,13 +87,30 @@ class EndpointModel(LanguageModel):
 
     def complete(self, prompt: str, *, schema: type | None, timeout_s: float) -> Completion:
         """One completion; see `LanguageModel.complete`."""
+        return self._completed(prompt, schema, timeout_s)
+
+    def look(self, prompt: str, picture_png: bytes, *, schema: type, timeout_s: float) -> str:
+        """One answer about a picture; see `mintpilot.core.ports.VisionModel.look`."""
+        return self._completed(prompt, schema, timeout_s, picture_png).text
+
+    def _completed(
+        self, prompt: str, schema: type | None, timeout_s: float, picture_png: bytes | None = None
+    ) -> Completion:
         started_s = time.monotonic()
         form = schema if schema is not None and issubclass(schema, BaseModel) else None
         if form is not None and self._mode is OutputMode.PROMPTED:
             prompt = f"{prompt}\n\nAnswer with JSON of this schema only: {json.dumps(_bare(form.model_json_schema()))}"
             form = None
         key = next((self._environment[name] for name in KEY_VARIABLES if self._environment.get(name)), "")
-        call = self._client.Call(url=self._url, model=self._model, key=key, prompt=prompt, form=form)
+        call = self._client.Call(
+            url=self._url,
+            model=self._model,
+            key=key,
+            prompt=prompt,
+            form=form,
+            picture_png=picture_png,
+            most_tokens=_WORDS if picture_png is None else _WORDS_OF_A_PICTURE,
+        )
         who = f"language model '{self._model}'"
 
         def ask() -> tuple[str, int]:
@@ -114,6 +131,10 @@ class EndpointModel(LanguageModel):
         return Completion(text=text, model=self._model, seconds=time.monotonic() - started_s, tokens=tokens)
 
 
+_WORDS = 400
+"""Longest answer, tokens."""
+_WORDS_OF_A_PICTURE = 2000
+"""… about a picture."""
 _GRACE_S = 0.1
 """For closing the connection after the deadline."""
 

@@ -10,7 +10,7 @@ from openai import AsyncOpenAI
 from pydantic import BaseModel
 from pydantic_ai.direct import model_request
 from pydantic_ai.exceptions import ModelAPIError, ModelHTTPError, UnexpectedModelBehavior
-from pydantic_ai.messages import ModelRequest
+from pydantic_ai.messages import BinaryContent, ModelRequest, UserPromptPart
 from pydantic_ai.models import ModelRequestParameters
 from pydantic_ai.models.openai import OpenAIChatModel
 from pydantic_ai.output import OutputObjectDefinition
@@ -21,7 +21,6 @@ from pydantic_ai.settings import ModelSettings
 from mintpilot.core.errors import DeviceError
 
 MOST_BYTES = 1_000_000
-_MOST_TOKENS = 400
 _KEPT_HEADERS = ("host", "content-type", "content-length", "accept", "connection", "user-agent")
 _JSON = {"content-type": "application/json"}
 _NO_KEY = "none"
@@ -38,6 +37,10 @@ class Call:
     prompt: str
     form: type[BaseModel] | None
     """For JSON by ``response_format``."""
+    most_tokens: int
+    """Longest answer."""
+    picture_png: bytes | None = None
+    """A picture that goes with the prompt."""
 
 
 class _TooLongError(Exception):
@@ -97,12 +100,19 @@ async def ask(call: Call) -> tuple[str, int]:
         )
         profile = OpenAIModelProfile(openai_chat_supports_max_completion_tokens=False, supports_json_schema_output=True)
         model = OpenAIChatModel(call.model, provider=OpenAIProvider(openai_client=client), profile=profile)
-        settings = ModelSettings(temperature=0.0, max_tokens=_MOST_TOKENS)
+        settings = ModelSettings(temperature=0.0, max_tokens=call.most_tokens)
         response = await model_request(
-            model, [ModelRequest.user_text_prompt(call.prompt)], model_settings=settings,
+            model, [_request(call)], model_settings=settings,
             model_request_parameters=_parameters(call.form), instrument=False,
         )  # fmt: skip
     return response.text or "", response.usage.output_tokens
+
+
+def _request(call: Call) -> ModelRequest:
+    if call.picture_png is None:
+        return ModelRequest.user_text_prompt(call.prompt)
+    picture = BinaryContent(data=call.picture_png, media_type="image/png")
+    return ModelRequest(parts=[UserPromptPart(content=[call.prompt, picture])])
 
 
 def told(error: Exception, model: str, address: str) -> DeviceError:

@@ -18,7 +18,8 @@ class Names:
             self._used[kind] = max(self._used.get(kind, 0), int(number))
 
     def new(self, kind: str) -> str:
-        """A fresh id."""
+        """A fresh id; a space in the kind becomes a hyphen."""
+        kind = kind.replace(" ", "-")
         self._used[kind] = self._used.get(kind, 0) + 1
         return f"{kind}-{self._used[kind]}"
 

@@ -6,6 +6,7 @@ A cell belongs to an outline as soon as a part of it does: a region that may be 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -62,6 +63,33 @@ def cells_in_polygon(
     in_cells = (corners - frame.origin_m[:2]) / frame.resolution_m - lo[:0:-1]
     layer: NDArray[np.bool_] = _polygon_mask(in_cells, int(hi[1] - lo[1]), int(hi[2] - lo[2]))
     return _flat(frame, lo, np.broadcast_to(layer, (int(hi[0] - lo[0]), *layer.shape)))
+
+
+def within_fence(semantic_map: SemanticMap, corners_m: Sequence[tuple[float, float]]) -> SemanticMap:
+    """The map with every cell unknown that is not wholly inside the fence, so that nothing is flown outside it.
+
+    Args:
+        semantic_map: the map.
+        corners_m: the fence's corners (x, y) in order, either way round, metres.
+
+    Raises:
+        MapError: fewer than three corners, or one that is not finite.
+    """
+    frame = semantic_map.frame
+    inside = cells_in_polygon(frame, corners_m)  # checks the corners
+    # The even-odd rule makes the complement: the outline of a box around everything, joined to the leftmost corner.
+    ring = [(float(x), float(y)) for x, y in corners_m]
+    first = min(range(len(ring)), key=lambda n: ring[n])
+    ring = [*ring[first:], *ring[: first + 1]]
+    lo = [min(frame.box.lo_m[i], *(corner[i] for corner in ring)) - frame.resolution_m for i in (0, 1)]
+    hi = [max(frame.box.hi_m[i], *(corner[i] for corner in ring)) + frame.resolution_m for i in (0, 1)]
+    gate = (lo[0], ring[0][1])
+    around = [gate, (lo[0], lo[1]), (hi[0], lo[1]), (hi[0], hi[1]), (lo[0], hi[1]), gate]
+    outside = cells_in_polygon(frame, [*around, *ring])
+    cells = np.full(semantic_map.cells.size, Cell.UNKNOWN, np.uint8)
+    kept = np.setdiff1d(inside, outside)
+    cells[kept] = semantic_map.cells.reshape(-1)[kept]
+    return replace(semantic_map, cells=cells.reshape(semantic_map.cells.shape))
 
 
 def regions_from_mask(

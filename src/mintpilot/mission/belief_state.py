@@ -4,13 +4,33 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Final
 
 from mintpilot.core.gap import PASSABLE, Belief, GapKind, KnowledgeGap
+from mintpilot.core.geometry import Ints, frozen
 from mintpilot.core.mission import AskingSettings
-from mintpilot.core.query import Answer, Evidence, Query, Reply
+from mintpilot.core.query import Answer, Evidence, Query, Reply, topics
 from mintpilot.core.semantic_map import SemanticMap
 from mintpilot.mission.extra_evidence import with_extra_evidence
 from mintpilot.reasoning.belief import condition
+
+ATTRIBUTES_NOT_KNOWN: Final = 2
+"""Somebody who did not know so many attributes of a thing is not asked about it any more (method, section 5)."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Grant:
+    """An explicit yes for a region: it covers what was shown, for as long as answers count (method, section 12)."""
+
+    gap: str
+    """Id of the obstacle gap."""
+    cells: Ints
+    """Flat indices (n,) of the region's cells as it was shown when the question was put."""
+    given_s: float
+    """When the answer came, mission clock."""
+
+    def __post_init__(self) -> None:
+        frozen(self.cells)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -21,8 +41,11 @@ class BeliefState:
     belief: Belief
     confirmed: frozenset[str] = frozenset()
     """Obstacle gaps that got an explicit yes."""
+    grants: tuple[Grant, ...] = ()
+    """Of each of these: the outline that was shown, and when the yes came; sorted by gap, none twice."""
     withdrawn: frozenset[str] = frozenset()
-    """Queries that are not asked again: answered UNSURE, or contradicting twice."""
+    """What is not asked again: what the operator does not know (`mintpilot.core.query.topics`, and target gaps of which
+    two attributes were not known), and queries whose answers contradicted twice."""
     asked: tuple[Evidence, ...] = ()
     """Queries that were answered, with the answer, oldest first."""
     attempts: tuple[str, ...] = ()
@@ -50,7 +73,7 @@ def update(state: BeliefState, query: Query, answer: Answer, settings: AskingSet
     if answer.reply is Reply.TIMEOUT:
         return AnswerUpdate(state=replace(state, silent=True))
     if answer.part is None:
-        return AnswerUpdate(state=replace(state, withdrawn=state.withdrawn | {query.id}))
+        return AnswerUpdate(state=replace(state, withdrawn=_with_not_known(state.withdrawn, query)))
     after = condition(state.belief, query, answer.part, settings.answer_error, max_joint=settings.max_joint)
     if after.contradiction:
         given_up = frozenset({query.id}) if state.attempts.count(query.id) > 1 else frozenset[str]()
@@ -70,8 +93,15 @@ def confirmed_by(query: Query, part: int, gaps: Sequence[KnowledgeGap]) -> froze
     return frozenset(x.gap for x in query.asserted(part) if x.gap in obstacles and x.values == frozenset({PASSABLE}))
 
 
+def _with_not_known(withdrawn: frozenset[str], query: Query) -> frozenset[str]:
+    """What is withdrawn after an "I don't know": a target gap altogether once two of its attributes were not known."""
+    after = withdrawn | topics(query)
+    spent = {
+        name for name in query.gap_ids if sum(topic.startswith(f"{name}/") for topic in after) >= ATTRIBUTES_NOT_KNOWN
+    }
+    return after | spent
+
+
 def remaining_budget(settings: AskingSettings, state: BeliefState) -> AskingSettings:
-    """The settings with those questions taken off the budget that left no trace, since their answers contradicted."""
-    traced = len(state.asked) + len(state.withdrawn)
-    lost = max(0, len(state.attempts) - traced)
-    return replace(settings, max_questions=max(0, settings.max_questions - lost)) if lost else settings
+    """The settings with the questions that were put taken off the budget."""
+    return replace(settings, max_questions=max(0, settings.max_questions - len(state.attempts)))

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
+from mintpilot.core.briefing import Briefing
 from mintpilot.core.events import MissionStarted
 from mintpilot.core.ports import Judge, Operator, Recorder, Vehicle
 from mintpilot.mission.deliberation import DeliberationParts
@@ -46,6 +47,8 @@ class MissionComponents:
     """False where the map is given and nothing new can be seen."""
     camera_period_s: float = 0.5
     """Between pictures in flight, seconds."""
+    briefing: Briefing | None = None
+    """What is shown before take-off and must be answered with yes; None: it takes off at once."""
     digests: bool = False
     """Whether each step's directives are kept as a digest, for a later replay."""
     strategy_name: str = "mint"
@@ -57,7 +60,7 @@ class MissionComponents:
     @property
     def setup(self) -> Setup:
         """What stays the same for the whole mission."""
-        return Setup(mission=self.parts.mission, surveys=self.surveys, simulated=self.simulated)
+        return Setup(mission=self.parts.mission, surveys=self.surveys, simulated=self.simulated, briefing=self.briefing)
 
     def started(self) -> MissionStarted:
         """The first event of the record."""
@@ -72,4 +75,5 @@ class MissionComponents:
             planner=self.planner_name,
             simulated=self.simulated,
             surveys=self.surveys,
+            briefing=self.briefing,
         )

@@ -144,7 +144,11 @@ class Journal:
 def _asked(before: MissionState, event: Input, after: MissionState) -> Iterator[Event]:
     """The question that was open, once it was answered or its time was over."""
     open_ = before.question
-    if open_ is None or (after.question is not None and after.question.question.id == open_.question.id):
+    if (
+        open_ is None
+        or before.grounded
+        or (after.question is not None and after.question.question.id == open_.question.id)
+    ):
         return
     if isinstance(event, Answered) and event.question == open_.question.id and after.learnt is not None:
         answer = after.learnt

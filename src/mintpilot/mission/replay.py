@@ -104,7 +104,12 @@ class _Replay:
         if self._state is None:
             if not isinstance(event, MissionBegun):
                 raise RecordError(f"event {number}: the steps begin with {type(event).__name__}: the start is missing")
-            setup = Setup(mission=self.started.mission, surveys=self.started.surveys, simulated=self.started.simulated)
+            setup = Setup(
+                mission=self.started.mission,
+                surveys=self.started.surveys,
+                simulated=self.started.simulated,
+                briefing=self.started.briefing,
+            )
             self._state = initial_state(setup, event.vehicle)
         what = self._thought_again(event) if isinstance(event, DeliberationEnded) else ""
         if not what:

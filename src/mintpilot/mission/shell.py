@@ -129,9 +129,10 @@ class Shell:
         return replace(failure, achieved=believed.achieved, left=believed.left)
 
     def close(self) -> None:
-        """Leaves the vehicle holding."""
+        """Leaves the vehicle holding, and ends the worker."""
         with suppress(DeviceError):
             self._parts.vehicle.hold()
+        self._worker.close()
 
     def _heard(self) -> list[Input]:
         """What operators and worker bring without time passing."""
@@ -208,7 +209,12 @@ class Shell:
     def _reword(self, question: Question) -> None:
         """Begins to make better words for a question that is put for the first time."""
         improve = self._parts.improve
-        if improve is None or question.attempt > 1 or (self._rewording and self._rewording[0] == question.id):
+        if (
+            improve is None
+            or not question.gaps
+            or question.attempt > 1
+            or (self._rewording and self._rewording[0] == question.id)
+        ):
             return
         self._rewording = (question.id, Rewording(improve, question))
         if all(operator.hears_once for operator in self._operators):

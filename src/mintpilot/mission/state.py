@@ -7,6 +7,7 @@ from enum import StrEnum
 
 import numpy as np
 
+from mintpilot.core.briefing import Briefing
 from mintpilot.core.geometry import Floats
 from mintpilot.core.inputs import Link
 from mintpilot.core.mission import Achieved, Mission, Outcome, Verdict
@@ -69,6 +70,8 @@ class Setup:
     """True where the first map is made by a survey flight."""
     simulated: bool = False
     """True in a simulator only: baselines may then fly what is not known to be passable."""
+    briefing: Briefing | None = None
+    """What is shown before take-off and must be answered with an explicit yes; None: it takes off at once."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -92,6 +95,8 @@ class OpenQuestion:
     deadline_s: float
     """When it counts as unanswered, mission clock."""
     shown_s: float | None = None
+    shown_map: SemanticMap | None = None
+    """What it speaks of: a yes for a region covers the outline that it has here. None: it speaks of no region."""
     first_text: str = ""
     """The words that were there first, where better ones followed; else empty."""
     read_backs: int = 0
@@ -133,6 +138,8 @@ class MissionState:
     activity: Activity = Activity.NONE
     beliefs: BeliefState | None = None
     """None until the first map is there."""
+    known_passable: frozenset[str] = frozenset()
+    """Obstacle gaps of regions that the first map calls passable: nobody needs to say so."""
     survey: SurveyProgress | None = None
     task_begun_s: float | None = None
     """When flight time began to count, mission clock."""
@@ -147,6 +154,8 @@ class MissionState:
     """Index of the leg that is flown, or prepared."""
     assume_passable: frozenset[str] = frozenset()
     motion: OngoingMotion | None = None
+    grounded: bool = False
+    """True until the briefing was answered with yes: nothing moves."""
     question: OpenQuestion | None = None
     learnt: Answer | None = None
     """The answer that was learnt from last, as it counted."""
@@ -219,6 +228,8 @@ class MissionState:
     def next_deadline_s(self) -> float:
         """The next moment at which passing time alone changes something, mission clock; infinity: none."""
         times = [self.question.deadline_s] if self.question is not None else []
+        if self.beliefs is not None:
+            times += [g.given_s + self.setup.mission.asking.answer_valid_s for g in self.beliefs.grants]
         if self.request is not None:
             times.append(self.request.deadline_s)
         return min(times, default=float("inf"))

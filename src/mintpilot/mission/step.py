@@ -14,6 +14,7 @@ from mintpilot.core.decisions import (
     NoPlan,
     RefuseFlight,
 )
+from mintpilot.core.gap import obstacle_id
 from mintpilot.core.inputs import (
     Answered,
     DeliberationEnded,
@@ -30,8 +31,9 @@ from mintpilot.core.inputs import (
 )
 from mintpilot.core.mission import Outcome
 from mintpilot.core.motion import MotionEnd
+from mintpilot.core.semantic_map import Knowledge
 from mintpilot.core.trajectory import VehicleState
-from mintpilot.mission import asking, flying, ordering, surveying
+from mintpilot.mission import asking, clearing, flying, ordering, surveying
 from mintpilot.mission.belief_state import BeliefState
 from mintpilot.mission.directives import Directive
 from mintpilot.mission.path_monitor import with_passable
@@ -65,8 +67,8 @@ def step(state: MissionState, event: Input) -> tuple[MissionState, tuple[Directi
     match event:
         case MissionBegun():
             t.set(vehicle=event.vehicle)
-            mission = t.state.setup.mission
-            t.take_off(mission.start_m[2] - mission.volume.lo_m[2])
+            briefing = t.state.setup.briefing
+            t.climb() if briefing is None else clearing.brief(t, briefing)
         case Ticked():
             _tick(t, event)
         case MapObserved():
@@ -77,6 +79,12 @@ def step(state: MissionState, event: Input) -> tuple[MissionState, tuple[Directi
             asking.shown(t, event)
         case QuestionReworded():
             asking.reworded(t, event)
+        case Answered() if t.state.grounded:
+            clearing.answered(t, event)
+        case Ordered() if t.state.grounded:
+            clearing.ordered(t, event)
+        case LinkChanged() if t.state.grounded and not event.up and event.link in clearing.NEEDED:
+            clearing.link_lost(t, event)
         case Answered():
             asking.somebody_spoke(t)
             asking.answered(t, event)
@@ -132,18 +140,22 @@ def _tick(t: Transition, event: Ticked) -> None:
         t.set(vehicle=event.vehicle, ready=t.state.task_begun_s is not None)
     question, request = t.state.question, t.state.request
     if question is not None and t.state.clock_s >= question.deadline_s:
-        asking.unanswered(t)
+        clearing.unanswered(t) if t.state.grounded else asking.unanswered(t)
     if request is not None and t.state.clock_s >= request.deadline_s:
         _without_decision(t, request, "the deliberation is overdue")
+    if t.state.beliefs is not None:
+        asking.check_permissions(t)
     ordering.pass_time(t)
 
 
 def _observed(t: Transition, event: MapObserved) -> None:
     beliefs = t.state.beliefs
     if beliefs is None:
-        t.set(beliefs=BeliefState(map=event.map, belief=prior_belief(())))
+        known = frozenset(obstacle_id(r.id) for r in event.map.regions if r.passable is Knowledge.YES)
+        t.set(beliefs=BeliefState(map=event.map, belief=prior_belief(())), known_passable=known)
     else:
         t.set(beliefs=replace(beliefs, map=event.map))
+        asking.check_permissions(t)
     match t.state.activity:
         case Activity.FIRST_LOOK:
             t.set(activity=Activity.NONE)

@@ -100,6 +100,11 @@ class Transition:
         """Climbs to the hover point."""
         self._begin(Move(motion=TakeOff(id=self.next_id(), height_m=height_m)), Activity.TAKE_OFF)
 
+    def climb(self) -> None:
+        """Takes off to the hover point of the mission's start."""
+        mission = self.state.setup.mission
+        self.take_off(mission.start_m[2] - mission.volume.lo_m[2])
+
     def descend(self) -> None:
         """Lands right below."""
         self._begin(Move(motion=Land(id=self.next_id())), Activity.DESCENT)

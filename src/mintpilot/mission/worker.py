@@ -22,6 +22,10 @@ class Worker(Protocol):
         """What has come back up to that time of the mission clock, oldest first."""
         ...
 
+    def close(self) -> None:
+        """Ends what it runs. Safe to call again."""
+        ...
+
 
 class InlineWorker(Worker):
     """Works a request out at once, and delivers the decision after a fixed time of the mission clock.
@@ -46,6 +50,9 @@ class InlineWorker(Worker):
         ready = tuple(event for due_s, event in self._done if due_s <= time_s)
         self._done = [item for item in self._done if item[0] > time_s]
         return ready
+
+    def close(self) -> None:
+        """See `Worker.close`."""
 
 
 def worked_out(parts: DeliberationParts, request: Request, time_s: float) -> DeliberationEnded:

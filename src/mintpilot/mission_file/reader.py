@@ -16,6 +16,8 @@ from pydantic import ValidationError
 
 from mintpilot.core.errors import MissionError
 from mintpilot.mission_file.form_checks import FormWords
+from mintpilot.mission_file.geodetic_places import with_local_places
+from mintpilot.mission_file.plan_stops import SUFFIXES, refused_as_mission, with_plan_stops
 from mintpilot.mission_file.schema import MissionFile
 from mintpilot.mission_file.semantic_checks import contradictions
 from mintpilot.mission_file.yaml_places import Document, Fault, Path_, read_document
@@ -104,24 +106,31 @@ def path_text(path: Path_) -> str:
 
 
 def _read(path: Path) -> tuple[MissionFile | None, list[Problem]]:
+    if path.suffix in SUFFIXES:
+        return None, _placed([refused_as_mission(path)], Document(), path)
     document = read_document(path)
     mission, faults = None, document.faults
     if not faults:
-        mission, faults = _formed(document)
+        mission, faults = _formed(document, path.parent)
     if mission is not None:
         faults = list(contradictions(mission, path.parent))
     return mission, _placed(faults, document, path)
 
 
-def _formed(document: Document) -> tuple[MissionFile | None, list[Fault]]:
+def _formed(document: Document, base: Path) -> tuple[MissionFile | None, list[Fault]]:
     if not isinstance(document.value, dict):
         message = "a mission is a mapping of keys to values; begin with 'mintpilot: 1'"
         return None, [Fault(path=(), line=1, message=message)]
     if "mintpilot" not in document.value:
         message = "'mintpilot' is missing; begin the file with 'mintpilot: 1', the version of its schema"
         return None, [Fault(path=(), line=1, message=message)]
+    value, faults = with_plan_stops(document.value, base)
+    if not faults:
+        value, faults = with_local_places(value)
+    if faults:
+        return None, faults
     try:
-        return MissionFile.model_validate(document.value), []
+        return MissionFile.model_validate(value), []
     except ValidationError as error:
         words = FormWords(document.value)
         found = error.errors(include_url=False)

@@ -89,6 +89,8 @@ class PerceptionSpec(Spec):
     use: Name = "geometric"
     """Perception by name: `geometric` (boxes, people lying, doors, smoke, fire), `segments` (bodies of any kind,
     anywhere), or that of a plug-in; `--perception` overrides it."""
+    namers: Several[Name] = ()
+    """With `segments`: who names what it finds, e.g. `[geometry, ocr, vision]`; default: by geometry."""
 
 
 class GoalSpec(Spec):
@@ -180,6 +182,9 @@ class MissionFile(Spec):
     """Where: a `scenario` by name, an explicit `scene`, a `map` of your own, or what was `seen`."""
     goals: Annotated[Several[GoalSpec], Field(min_length=1)] | None = None
     """The steps, in order. Without them they are taken from the instruction."""
+    flight_plan: Words | None = None
+    """A `.plan` of QGroundControl or a `.waypoints` list, relative to this file, for a `map` with a `georeference`: its
+    way-points are the goals, and its fence is that of the map."""
     seeks_people: bool | None = None
     """True when everybody who is hurt must be found. Default: as the instruction says."""
     keep_away: Several[KeepAwaySpec] = ()

@@ -11,6 +11,7 @@ from mintpilot.core.geometry import Box, Vec3
 from mintpilot.core.mission import AskingSettings, CriticalityRule, Mission, ReturnRule, SurveySettings
 from mintpilot.core.plan import VehicleLimits
 from mintpilot.core.task import Action, Reference, SubGoal, Task
+from mintpilot.mission_file.geodetic_places import georeference_of
 from mintpilot.mission_file.schema import GoalSpec, MissionFile
 from mintpilot.mission_file.schema_base import attributes_of, place_of
 from mintpilot.mission_file.schema_world import MapWorld
@@ -39,6 +40,7 @@ def mission_of(file: MissionFile, *, start_m: Vec3, volume: Box) -> Mission:
         prior_occupied=file.priors.occupied,
         people_price_s=file.people_price_s,
         returns=ReturnRule(file.vehicle.returns),
+        georeference=None if file.world.georeference is None else georeference_of(file.world.georeference),
         **resolution,
     )
 

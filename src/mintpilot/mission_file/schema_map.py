@@ -12,7 +12,7 @@ from mintpilot.core.observation import RegionKind
 from mintpilot.core.semantic_map import Knowledge, MapObject, Region, Room, SemanticMap
 from mintpilot.mapping.movingai import load_movingai
 from mintpilot.mapping.occupancy import load_ros_map
-from mintpilot.mapping.outline import cells_in_box, cells_in_polygon, regions_from_mask
+from mintpilot.mapping.outline import cells_in_box, cells_in_polygon, regions_from_mask, within_fence
 from mintpilot.mapping.reachable import cropped, in_part
 from mintpilot.mission_file.schema import PriorsSpec
 from mintpilot.mission_file.schema_base import attributes_of, place_of
@@ -32,6 +32,11 @@ def is_flat(world: MapWorld) -> bool:
 
 def load_bare_map(world: MapWorld, base: Path) -> SemanticMap:
     """The map's cells, nothing on it yet; file names are relative to ``base``. Raises `MapError` and `LimitError`."""
+    whole = _whole_map(world, base)
+    return whole if world.fence is None else within_fence(whole, world.fence)
+
+
+def _whole_map(world: MapWorld, base: Path) -> SemanticMap:
     path = base / world.map
     if path.suffix in ROS_SUFFIXES:
         return load_ros_map(path, height_m=world.height_m)

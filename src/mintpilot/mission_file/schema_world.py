@@ -24,6 +24,30 @@ Passability: TypeAlias = Literal["passable", "blocked"]
 Occupancy: TypeAlias = Literal["present", "absent"]
 
 
+class GeoreferenceSpec(Spec):
+    """Where the map lies on the earth (WGS 84). Places may then be written as `{latitude, longitude, altitude_m}`."""
+
+    latitude: Annotated[float, Field(ge=-90, le=90)]
+    """Of the map's origin, degrees."""
+    longitude: Annotated[float, Field(ge=-180, le=180)]
+    """Of the map's origin, degrees."""
+    altitude_m: float = 0.0
+    """Of z = 0, metres above mean sea level."""
+    heading_rad: float = 0.0
+    """Compass direction of the map's y axis, radians clockwise from true north."""
+
+
+class GeodeticPlaceSpec(Spec):
+    """A place on the earth (WGS 84)."""
+
+    latitude: Annotated[float, Field(ge=-90, le=90)]
+    """Degrees."""
+    longitude: Annotated[float, Field(ge=-180, le=180)]
+    """Degrees."""
+    altitude_m: float | None = None
+    """Metres above mean sea level. Default: as with `[x, y]`."""
+
+
 class ScenarioWorld(Spec):
     """A world drawn by one of the built-in generators."""
 
@@ -33,6 +57,8 @@ class ScenarioWorld(Spec):
     """The generator's own settings; those not named keep their defaults."""
     seed: Annotated[int, Field(ge=0)] | None = None
     """Draws the same world again; `--seed` overrides it. Default: 0."""
+    georeference: GeoreferenceSpec | None = None
+    """Where it lies on the earth; default: nowhere, all places are metres."""
 
 
 class SceneWorld(Spec):
@@ -42,6 +68,8 @@ class SceneWorld(Spec):
     """What is really there."""
     seed: Annotated[int, Field(ge=0)] | None = None
     """For the looks, the sensor noise and the scripted operator; `--seed` overrides it. Default: 0."""
+    georeference: GeoreferenceSpec | None = None
+    """Where it lies on the earth; default: nowhere, all places are metres."""
 
 
 class RegionSpec(Spec):
@@ -115,6 +143,8 @@ class MapWorld(Spec):
     """Height at which a flat map is flown, metres."""
     start_m: Place
     """Where the drone takes off."""
+    fence: Annotated[Several[Point2], Field(min_length=3)] | None = None
+    """Corners [x, y] in order of what must not be left. Nothing outside it is flown through."""
     regions: Several[RegionSpec] = ()
     """Places that are passable or not as a whole."""
     rooms: Several[RoomSpec] = ()
@@ -123,6 +153,8 @@ class MapWorld(Spec):
     """Things that the instruction may mean."""
     seed: Annotated[int, Field(ge=0)] | None = None
     """For the scripted operator; `--seed` overrides it. Default: 0."""
+    georeference: GeoreferenceSpec | None = None
+    """Where it lies on the earth; default: nowhere, all places are metres."""
 
 
 class SeenWorld(Spec):
@@ -134,6 +166,8 @@ class SeenWorld(Spec):
     """Where the drone takes off. Default: where the first picture was taken."""
     seed: Annotated[int, Field(ge=0)] | None = None
     """For the scripted operator; `--seed` overrides it. Default: 0."""
+    georeference: GeoreferenceSpec | None = None
+    """Where it lies on the earth; default: nowhere, all places are metres."""
 
 
 def _kind_of_world(value: Any) -> str | None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -78,7 +78,8 @@ def fused(claims: Sequence[tuple[NameGuess, ...]], *, prior: float = 0.02) -> tu
     """What several namers together say of one segment: their evidence multiplied, none of them louder than it is sure.
 
     Each namer's probability for a name is compared with the prior; a namer that names other things speaks against a
-    name only as far as it is sure of those, one that names nothing does not speak.
+    name only as far as it is sure of those, one that names nothing does not speak. Who says ``box`` speaks for
+    ``medicine box`` as well: it is one.
 
     Args:
         claims: of each namer, its names for the segment.
@@ -96,9 +97,15 @@ def fused(claims: Sequence[tuple[NameGuess, ...]], *, prior: float = 0.02) -> tu
         said = {g.label: g.probability for g in guesses}
         rest = max(1e-6, 1.0 - sum(said.values()))
         unsaid = rest * prior / (prior * (len(labels) - len(said)) + none)
-        chances = [max(said.get(label, unsaid), 1e-9) for label in labels]
+        chances = [max(said.get(label, _as_kind(label, said, unsaid)), 1e-9) for label in labels]
         logs += np.log(np.array([*chances, max(rest * none / (none + prior * (len(labels) - len(said))), 1e-9)])) - base
     weights = np.exp(logs - logs.max())
     weights /= weights.sum()
     found = [NameGuess(label=n, probability=float(w)) for n, w in zip(labels, weights[:-1], strict=True) if w > 0.01]
     return tuple(sorted(found, key=lambda g: (-g.probability, g.label)))
+
+
+def _as_kind(label: str, said: Mapping[str, float], otherwise: float) -> float:
+    """Probability that a namer gives to the kind that a compound name is one of: ``box`` for ``medicine box``."""
+    kinds = [probability for name, probability in said.items() if label.endswith(f" {name}")]
+    return max(kinds, default=otherwise)

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from mintpilot.core.errors import DeviceError
 from mintpilot.core.geometry import Bools, Box, Floats
 from mintpilot.core.observation import OBJECT, Attribute, Detection, Frame, NameGuess, Segment
 from mintpilot.core.ports import Namer, Perception
@@ -46,6 +47,12 @@ class SegmentPerception(Perception):
     def __init__(self, settings: PerceptionSettings | None = None, *, namers: Sequence[Namer] | None = None) -> None:
         self._settings = settings or PerceptionSettings()
         self._namers = tuple(namers) if namers is not None else (GeometryNamer(),)
+        self._remarks: list[str] = []
+
+    def take_remarks(self) -> tuple[str, ...]:
+        """What went wrong with namers since it was last called, in sentences; each is told once."""
+        told, self._remarks = tuple(dict.fromkeys(self._remarks)), []
+        return told
 
     def detect(self, frame: Frame, index: int) -> tuple[Detection, ...]:
         """What the frame shows. A picture without usable depth, or a very small one, shows nothing."""
@@ -59,12 +66,20 @@ class SegmentPerception(Perception):
         bodies = [body for body in scene.things if float(covered[body.mask].mean()) < HAZY]
         parts = [segment_of(view, scene, body, self._settings) for body in bodies]
         segments = with_people([part for part in parts if part is not None])
-        claims = [namer.names(frame, segments) for namer in self._namers]
+        claims = [self._claims(namer, frame, segments) for namer in self._namers]
         found = []
         for number, segment in enumerate(segments):
             names = fused([claim[number] for claim in claims])
             found.append(_detection(view, segment, names, index, self._settings))
         return (*found, *hazards, *find_leaves(view, scene, index, self._settings))
+
+    def _claims(self, namer: Namer, frame: Frame, segments: Sequence[Segment]) -> tuple[tuple[NameGuess, ...], ...]:
+        """What one namer says; one that fails says nothing, and the picture is seen without it."""
+        try:
+            return namer.names(frame, segments)
+        except DeviceError as error:
+            self._remarks.append(str(error))
+            return ((),) * len(segments)
 
 
 def segment_of(view: View, scene: Scene, body: Body, settings: PerceptionSettings) -> Segment | None:

@@ -49,7 +49,7 @@ class SceneTruth(TruthOracle):
                 value = self._occupied(gap.position_m)
             case GapKind.TARGET:
                 value = self._meant(gap.candidates)
-            case GapKind.VALUE:
+            case GapKind.VALUE | GapKind.GO:
                 value = None
         return value if value in gap.values else None
 

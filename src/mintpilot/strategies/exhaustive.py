@@ -6,7 +6,7 @@ import numpy as np
 
 from mintpilot.core.gap import PASSABLE, GapKind, KnowledgeGap
 from mintpilot.core.ports import Ask, Decision, Situation, Strategy
-from mintpilot.core.query import Query
+from mintpilot.core.query import Query, is_refused
 from mintpilot.core.tolerances import DECIMALS, TOLERANCE
 from mintpilot.core.tree import Mint, ScoredQuery, StopReason
 from mintpilot.elicitation.candidates import gap_literals
@@ -41,7 +41,7 @@ def best_about(gap: KnowledgeGap, situation: Situation) -> ScoredQuery | None:
     answered = {one.query.id for one in situation.asked} if situation.settings.answer_error == 0 else set()
     found = []
     for query in queries:
-        if query.id in situation.withdrawn or query.id in answered:
+        if is_refused(query, situation.withdrawn) or query.id in answered:
             continue
         scored = scored_alone(query, gap, situation)
         # A region that is surely passable still needs its explicit yes.

@@ -9,7 +9,7 @@ import numpy as np
 
 from mintpilot.core.geometry import Floats
 from mintpilot.core.ports import QueryObjective, Situation
-from mintpilot.core.query import Query
+from mintpilot.core.query import Query, is_refused
 from mintpilot.core.tree import Mint, ScoredQuery
 from mintpilot.elicitation.candidates import candidate_queries, gap_literals
 from mintpilot.elicitation.choose import choose, query_situation
@@ -95,12 +95,12 @@ def sound_proposals(situation: Situation, mint: Mint, proposed: Sequence[Query])
     gaps = {gap.id: gap for gap in mint.belief.gaps}
     start_m = situation.problem.start_m
     language = {name: set(gap_literals(gap, start_m)) for name, gap in gaps.items()}
-    spent = {one.query.id for one in situation.asked} | situation.withdrawn
+    spent = {one.query.id for one in situation.asked}
     known = {_key(query, mint) for query in candidate_queries(mint, start_m=start_m)}
     sound: list[Query] = []
     for query in proposed[:MOST]:
         spoken = all(x.gap in gaps and x in language[x.gap] for x in query.every_literal)
-        if not spoken or query.id in spent or not is_sayable(query, gaps):
+        if not spoken or query.id in spent or is_refused(query, situation.withdrawn) or not is_sayable(query, gaps):
             continue
         key = _key(query, mint)
         if any(key) and key not in known:

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from mintpilot.core.gap import ABSENT, PRESENT, GapKind, KnowledgeGap
 from mintpilot.core.observation import OBJECT
 from mintpilot.core.semantic_map import MapObject
-from mintpilot.uncertainty.things import synonyms
+from mintpilot.uncertainty.things import stands_for
 
 PERSON = "person"
 DOUBTFUL = (0.25, 0.9)
@@ -69,29 +69,27 @@ def said_of(thing: MapObject) -> str:
 def referents(label: str, fitting: Sequence[MapObject], *, unseen: float = NOT_SEEN) -> Referents:
     """What a phrase may mean, by how sure the names of the things are.
 
-    Each thing is what the phrase says with the probability of its name; exactly one is meant, if any. A thing without
-    doubt about its name counts fully, one that nobody could name a little.
+    Each thing is what the phrase says with the probability of its name, and of those that are, each is as likely meant:
+    two things that are surely boxes stay a question. A thing without doubt about its name counts fully, one that nobody
+    could name a little.
 
     Args:
         label: the noun of the phrase.
         fitting: things whose known attributes do not speak against the phrase.
         unseen: probability that it was in no picture.
     """
-    chances = {o.id: min(0.999, _chance(label, o)) for o in fitting}
-    odds = {i: p / (1 - p) for i, p in chances.items() if p > 0.005}
-    # Exactly one is meant: the odds of each against none of them being so called.
-    total = math.fsum(odds.values())
-    seen = (1.0 - unseen) / (1.0 + total)
-    named = sorted(((i, odd * seen) for i, odd in odds.items()), key=lambda pair: (-pair[1], pair[0]))
-    return Referents(things=tuple(named), none_of_them=seen, not_yet_seen=unseen)
+    chances = {o.id: p for o in fitting if (p := min(0.999, _chance(label, o))) > 0.005}
+    none = (1.0 - unseen) * math.prod(1.0 - p for p in chances.values())
+    share = (1.0 - unseen - none) / max(math.fsum(chances.values()), 1e-12)
+    named = sorted(((i, p * share) for i, p in chances.items()), key=lambda pair: (-pair[1], pair[0]))
+    return Referents(things=tuple(named), none_of_them=none, not_yet_seen=unseen)
 
 
 def _chance(label: str, thing: MapObject) -> float:
-    alike = synonyms(label)
     if not thing.names:
         if thing.label == OBJECT:
             return UNNAMED
-        return 1.0 if synonyms(thing.label) & alike else 0.0
-    said = [g.probability for g in thing.names if synonyms(g.label) & alike]
+        return 1.0 if stands_for(thing.label, label) else 0.0
+    said = [g.probability for g in thing.names if stands_for(g.label, label)]
     rest = 1.0 - math.fsum(g.probability for g in thing.names)
     return math.fsum(said) if said else UNNAMED * max(0.0, rest)

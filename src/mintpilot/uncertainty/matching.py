@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from mintpilot.core.geometry import Vec3
 from mintpilot.core.observation import Attribute
 from mintpilot.core.task import Reference
-from mintpilot.uncertainty.things import ROOM, Thing, name_of, synonyms, value_of, values_of
+from mintpilot.uncertainty.things import ROOM, Thing, name_of, stands_for, synonyms, value_of, values_of
 
 SIDE = "side"
 """Attribute of a reference: ``left`` or ``right`` of the line from the start to the middle of the map."""
@@ -72,7 +72,9 @@ def match(reference: Reference, things: Sequence[Thing], view: Standpoint) -> tu
     """
     plain = [a for a in reference.attributes if name_of(a) != EXTREME]
     whole = " ".join((*(value_of(a) for a in plain if not name_of(a)), reference.label))
-    found = tuple(t for t in things if reference.label and _word(t.label) == _word(whole))
+    found = tuple(t for t in things if reference.label and (_word(t.label) == _word(whole) or _may_be(t, whole)))
+    if found and whole != reference.label:
+        plain = [a for a in plain if name_of(a)]  # the unnamed ones are part of the name
     found = found or _of_label(reference.label, things)
     for attribute in plain:
         found = tuple(t for t in found if _has(t, attribute, things, view) is not False)
@@ -90,14 +92,14 @@ def _of_label(label: str, things: Sequence[Thing]) -> tuple[Thing, ...]:
     if not label:
         return tuple(things)
     exact = tuple(t for t in things if _word(t.label) == _word(label) or _may_be(t, label))
-    return exact or tuple(t for t in things if synonyms(t.label) & synonyms(label))
+    return exact or tuple(t for t in things if stands_for(t.label, label))
 
 
 def name_probability(label: str, thing: Thing) -> float:
     """That the thing is what the label says, as far as its names tell; 1 for one without doubt about its name."""
     if not thing.names or not label:
         return 1.0
-    return math.fsum(g.probability for g in thing.names if synonyms(g.label) & synonyms(label))
+    return math.fsum(g.probability for g in thing.names if stands_for(g.label, label))
 
 
 def _may_be(thing: Thing, label: str) -> bool:

@@ -80,6 +80,13 @@ def synonyms(label: str) -> frozenset[str]:
     return frozenset(x for group in _ALIKE if word in group for x in group) | {word}
 
 
+def stands_for(name: str, label: str) -> bool:
+    """Whether a thing of that name is one of the label: a ``medicine box`` is a ``box``, and so is a ``crate``."""
+    alike = synonyms(label)
+    word = name.lower().replace("_", " ").strip()
+    return bool(synonyms(word) & alike) or any(word.endswith(f" {other}") for other in alike)
+
+
 def things_of(map: SemanticMap) -> tuple[Thing, ...]:
     """Objects and rooms of the map, sorted by id, so that their order in the map never matters."""
     objects = (

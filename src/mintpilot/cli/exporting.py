@@ -1,0 +1,61 @@
+"""``mintpilot export``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Literal
+
+from cyclopts import Parameter
+
+from mintpilot.cli.bench_flags import Flag
+from mintpilot.cli.exits import ExitCode, guarded
+from mintpilot.core.errors import RecordError
+
+
+def export(
+    source: Path,
+    /,
+    *,
+    to: Annotated[Literal["plan", "wpl", "geojson"], Parameter(name="--to")] = "plan",
+    firmware: Literal["px4", "ardupilot"] = "px4",
+    out: Path | None = None,
+    debug: Flag = False,
+) -> ExitCode:
+    """Write the flight plan of a mission or a recorded run for a ground station.
+
+    The mission's map needs a georeference. A plan that rests on a question is exported from the run that answered it.
+    Autopilots cut corners: keep the acceptance radius small, and check the way on the ground station's map.
+
+    Args:
+        source: A mission file, or the folder of a run.
+        to: A .plan of QGroundControl, a way-point list (QGC WPL 110), or GeoJSON.
+        firmware: For which autopilot a .plan is written.
+        out: The file. Default: standard output.
+        debug: Show the traceback of an error.
+    """
+
+    def work() -> ExitCode:
+        from mintpilot.assembly.exporting import flight_plan_from
+        from mintpilot.ground_station.geojson import geojson_text
+        from mintpilot.ground_station.qgroundcontrol import plan_text
+        from mintpilot.ground_station.waypoints import waypoints_text
+
+        plan = flight_plan_from(source)
+        match to:
+            case "plan":
+                text = plan_text(plan, firmware)
+            case "wpl":
+                text = waypoints_text(plan)
+            case "geojson":
+                text = geojson_text(plan)
+        if out is None:
+            print(text, end="")
+            return ExitCode.SUCCESS
+        try:
+            out.write_text(text, encoding="utf-8")
+        except OSError as error:
+            raise RecordError(f"cannot write {out}: {error.strerror}; choose another file with --out") from error
+        print(out)
+        return ExitCode.SUCCESS
+
+    return guarded(work, as_json=False, debug=debug)
