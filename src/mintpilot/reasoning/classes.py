@@ -118,6 +118,13 @@ def cost_under(plan: Plan, mint: Mint, *, surely: bool = False) -> Floats:
     return cost
 
 
+def least_cost_s(plan: Plan, given: Assumptions) -> float:
+    """Flight and prices of a plan where all that is open turns out well, seconds."""
+    possible = dict(given.items)
+    stakes = (price for gap, value, price in plan.stakes if possible.get(gap) == frozenset({value}))
+    return plan.cost_s + plan.undone_s + sum(stakes)
+
+
 def demands(plan: Plan) -> dict[str, str]:
     """What must hold for the plan to be flown as it is meant: gap id → the value that it needs.
 

@@ -21,7 +21,7 @@ from mintpilot.core.plan import Plan
 from mintpilot.core.ports import ImpactMetric, PlanSpace
 from mintpilot.core.tolerances import DECIMALS, TOLERANCE
 from mintpilot.core.tree import LeafReason, Mint
-from mintpilot.reasoning.classes import NodeDraft, finish
+from mintpilot.reasoning.classes import NodeDraft, finish, least_cost_s
 from mintpilot.reasoning.entropy import entropy_bits
 from mintpilot.reasoning.support import clear_targets, conditional, narrow
 
@@ -100,7 +100,10 @@ class _Growth:
         if pair not in self.distances:
             self.distances[pair] = self.metric.divergence(best.path_m, sure.path_m)
         node.divergence_m = self.distances[pair]
-        if _dearest_s(sure, node.given, self.gaps) - _least_s(best, node.given) > self.settings.delta_c_s + TOLERANCE:
+        if (
+            _dearest_s(sure, node.given, self.gaps) - least_cost_s(best, node.given)
+            > self.settings.delta_c_s + TOLERANCE
+        ):
             return False
         if self.settings.rule is CriticalityRule.REGRET:
             return True
@@ -146,13 +149,6 @@ class _Growth:
 def _leaf(node: NodeDraft, reason: LeafReason, plan: Plan | None) -> list[NodeDraft]:
     node.leaf, node.plan = reason, plan
     return []
-
-
-def _least_s(plan: Plan, given: Assumptions) -> float:
-    """Cost of a plan where all that is open turns out well: flight, and what it surely leaves undone, seconds."""
-    possible = dict(given.items)
-    stakes = (price for gap, value, price in plan.stakes if possible.get(gap) == frozenset({value}))
-    return plan.cost_s + plan.undone_s + sum(stakes)
 
 
 def _dearest_s(plan: Plan, given: Assumptions, gaps: Mapping[str, KnowledgeGap]) -> float:
