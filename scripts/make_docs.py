@@ -43,6 +43,10 @@ COMMANDS = (
     "understand answer",
     "export",
     "sim serve",
+    "log info",
+    "log recover",
+    "log export",
+    "runs",
 )
 HEAD = """# The command line
 
