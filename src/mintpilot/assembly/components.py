@@ -206,8 +206,8 @@ class _Components(AbstractContextManager[MissionComponents]):
         world, choices = self._world, self._choices
         if world.task.needs_confirmation and not any(operator.attended for operator in self._operators):
             raise InputError(
-                f"'{world.mission.instruction}' was read by a language model: a real vehicle flies it only after a person "
-                "has said go; use --operator terminal or console"
+                f"'{world.mission.instruction}' was read by a language model: a real vehicle flies it only after "
+                "somebody has said go; use --operator terminal or console"
             )
         vehicle = make_vehicle(world, choices.address, accept_failsafes=choices.accept_failsafes)
         self._stack.callback(vehicle.close)

@@ -383,6 +383,10 @@ class Judge(Protocol):
         """The verdict at the end, success included."""
         ...
 
+    def people(self) -> tuple[int, int]:
+        """(how many of the people who must be found were found so far, how many there are)."""
+        ...
+
 
 class Recorder(Protocol):
     """Keeps what happened."""

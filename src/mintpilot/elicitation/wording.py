@@ -92,7 +92,10 @@ def _flight(plan: Plan | None, sure: bool, about: tuple[KnowledgeGap, ...], left
             return f"{i} fly around {'it' if len(about) == 1 else 'them'}"
         return f"{i} fly through {'it' if len(about) == 1 else joined([subject_of(g) for g in entered], 'and')}"
     if kinds == {GapKind.PRESENCE}:
-        visited = [g for g in about if g.id not in plan.skips]
+        left = {one.stop.gap for one in plan.leaves_undone}
+        visited = [g for g in about if g.id not in plan.skips | left]
+        if len(about) == 1 and about[0].id in left:
+            return f"{i} cannot reach it, and do what else I can"
         if not visited:
             return f"{i} fly past it" if len(about) == 1 else f"{i} fly past them"
         if len(about) == 1:

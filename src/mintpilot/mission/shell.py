@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from contextlib import suppress
+from dataclasses import replace
 
 from mintpilot.core.errors import DeviceError
 from mintpilot.core.events import Noticed, Timed
@@ -119,9 +120,13 @@ class Shell:
         if judge is None:
             return believed
         failure = judge.verdict()
-        if failure is not None:
-            return failure
-        return judge.final() if believed.outcome is Outcome.SUCCESS else believed
+        if failure is None:
+            if believed.outcome not in (Outcome.SUCCESS, Outcome.PARTIAL):
+                return believed
+            failure = judge.final()
+            if believed.outcome is Outcome.PARTIAL and failure.outcome in (Outcome.PERSON_MISSED, Outcome.NOT_REACHED):
+                return believed
+        return replace(failure, achieved=believed.achieved, left=believed.left)
 
     def close(self) -> None:
         """Leaves the vehicle holding, and ends the worker."""

@@ -165,6 +165,10 @@ class KinematicSimulator(Vehicle, Judge):
         """The verdict at the end."""
         return self._judge.final()
 
+    def people(self) -> tuple[int, int]:
+        """(people found who must be, people who must be found)."""
+        return self._judge.people()
+
     def _begin(self, motion: Motion, way: Reference) -> None:
         if self._judge.verdict() is not None:
             way = hover(self._position, self._yaw, np.zeros(1))
