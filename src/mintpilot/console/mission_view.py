@@ -198,6 +198,9 @@ class MissionView:
                 self._log("answer", f"{said} ({input.operator})" if input.operator else said)
             case _:
                 pass
+        if "WithdrawQuestion" in event.directives and self._question is not None:
+            # The mission may be busy for a while before it says so: the card goes at once.
+            self.withdraw(self._question.id, "")
 
     def _is_open(self, question: str) -> bool:
         return self._question is not None and self._question.id == question

@@ -209,6 +209,7 @@ class Consequence(Message):
     reply: Literal["yes", "no", "unsure", "option", "silence"]
     option: int | None = None
     words: str
+    """Empty where the page's own words say it."""
     path: tuple[Point, ...] = ()
     seconds: float | None = None
     share: float | None = None

@@ -71,7 +71,9 @@ def _consequences(question: Question, asked: AskQuestion | None) -> tuple[Conseq
     else:
         found.append(_led_to(query, YES_PART, mint, Consequence(reply="yes", words=question.yes_means)))
         found.append(_led_to(query, NO_PART, mint, Consequence(reply="no", words=question.no_means)))
-    silence = Consequence(reply="silence", words="")
+    grounded = any(gap.kind is GapKind.GO for gap in question.gaps)  # without a yes it does not take off
+    found.append(Consequence(reply="unsure", words=question.no_means if grounded else ""))
+    silence = Consequence(reply="silence", words=question.no_means if grounded else "")
     cautious = reasoning.cautious if reasoning is not None else None
     if reasoning is not None and cautious is not None:
         silence = _with_plan(silence, cautious, reasoning.gaps, None)

@@ -240,7 +240,8 @@ _HEADERS: Final = {
 
 def _policy(address: Address, port: int) -> str:
     scheme = "wss" if address.is_safe else "ws"
-    sockets = " ".join(sorted(f"{scheme}://{host}" for host in address.hosts(port)))
+    named = sorted(host for host in address.hosts(port) if not host.startswith("["))  # no policy can name those
+    sockets = " ".join(["'self'", *(f"{scheme}://{host}" for host in named)])
     return (
         f"default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self'; connect-src {sockets}; "
         "base-uri 'none'; form-action 'none'; frame-ancestors 'none'; require-trusted-types-for 'script'"

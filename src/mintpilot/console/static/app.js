@@ -46,7 +46,7 @@ function showMission(m) {
   $("instruction").textContent = m.instruction;
   $("briefing").replaceChildren(
     ...(m.verdict ? [make("p", { class: `verdict ${m.verdict === "success" ? "good" : "bad"}`, role: "status" }, make("strong", { text: say("ended") }), make("span", { text: m.reason }))] : []),
-    ...(m.briefing.length && !m.verdict ? [make("details", { open: true }, make("summary", { text: say("mission") }), ...m.briefing.map((line) => make("p", { text: line })))] : []));
+    ...(m.briefing.length && !m.verdict ? [make("details", { open: true }, make("summary", { text: say("briefing") }), ...m.briefing.map((line) => make("p", { text: line })))] : []));
 }
 
 function showSeat(s) {

@@ -29,7 +29,8 @@ export class Card {
     if (!question.id) {
       this.#map.setWay([]);
       this.#map.setSpots([]);
-      if (before?.id) this.#announce(say("closed", question.closed));
+      if (before?.id && question.closed) this.#announce(say("closed", question.closed));
+      $("said").textContent = "";
       return;
     }
     this.#map.setSpots(question.spots);
@@ -125,8 +126,8 @@ export class Card {
         make("button", { type: "button", onclick: () => this.#more(), disabled: q.extended || !this.#may, text: say("more"), "aria-keyshortcuts": "T" }),
         make("button", { type: "button", onclick: () => this.repeat(), text: say("repeat"), "aria-keyshortcuts": "R" }),
         make("button", { type: "button", onclick: () => { this.#aloud = !this.#aloud; globalThis.speechSynthesis?.cancel(); this.draw(); if (this.#aloud) this.repeat(false); }, "aria-pressed": String(this.#aloud), text: say(this.#aloud ? "mute" : "aloud") }),
-        make("button", { type: "button", onclick: () => this.attend("where"), text: say("where") }),
-        make("button", { type: "button", onclick: () => { this.#why = !this.#why; this.draw(); }, "aria-expanded": String(this.#why), text: say("why") })),
+        ...(q.spots.length ? [make("button", { type: "button", onclick: () => this.attend("where"), text: say("where") })] : []),
+        ...(q.why.length || q.worth ? [make("button", { type: "button", onclick: () => { this.#why = !this.#why; this.draw(); }, "aria-expanded": String(this.#why), text: say("why") })] : [])),
       ...(this.#why ? [make("ul", { class: "why" }, ...q.why.map((line) => make("li", { text: line })),
         ...(q.worth ? [make("li", { text: say("reasons", q.worth.gain_bits.toFixed(2), q.worth.saved_s.toFixed(1), q.worth.queries, q.worth.gaps) })] : []))] : []),
       ...this.#candidates(q));
@@ -137,11 +138,8 @@ export class Card {
   #answers(q) {
     const rows = q.consequences.map((c) => {
       const name = c.reply === "option" ? `${c.option + 1}` : say(c.reply);
-      const key = { yes: "Y", no: "N", option: name }[c.reply];
-      return this.#row(c, name, key, c.reply === "silence" ? say("silenceMeans") : c.words);
+      return this.#row(c, name, { yes: "Y", no: "N", unsure: "U", option: name }[c.reply], c.words || say(`${c.reply}Means`));
     });
-    const unsure = this.#row({ reply: "unsure", path: [], undone: [] }, say("unsure"), "U", say("unsureMeans"));
-    rows.splice(rows.length - 1, 0, unsure);
     return [make("div", { class: "answers", role: "group", "aria-label": q.text }, ...rows)];
   }
 

@@ -110,7 +110,10 @@ export class MapView {
     canvas.height = canvas.clientHeight * ratio;
     const c = canvas.getContext("2d");
     c.scale(ratio, ratio);
-    if (!this.#pane) return;
+    if (!this.#pane) {
+      this.#label(c, say("noMap"), canvas.clientWidth / 2, canvas.clientHeight / 2);
+      return;
+    }
     const f = this.#frame();
     c.imageSmoothingEnabled = false;
     if (this.#ground) c.drawImage(this.#ground, f.x(f.left), f.y(f.top), f.scale * (f.right - f.left), f.scale * (f.top - f.bottom));

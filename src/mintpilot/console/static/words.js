@@ -2,7 +2,7 @@
 
 const WORDS = {
   en: {
-    skip: "To the question", language: "Language", question: "Question", say: "In your own words", send: "Send",
+    briefing: "As it was understood", noMap: "No map yet", skip: "To the question", language: "Language", question: "Question", say: "In your own words", send: "Send",
     map: "Map", camera: "What the drone sees", mission: "Mission", log: "What happened", tree: "How it thinks", gaps: "What it does not know",
     hold: "Hold", continue: "Continue", return: "Return", land: "Land", abort: "Abort", orders: "Orders",
     answering: "You answer", watching: "You watch", take: "Answer from here", takeOver: "Take over answering", leave: "Hand over",
@@ -22,7 +22,7 @@ const WORDS = {
     "log-question": "asks", "log-answer": "answer", "log-order": "order", "log-says": "says", "log-note": "note", "log-plan": "plan", "log-begun": "begins", "log-ended": "end",
   },
   de: {
-    skip: "Zur Frage", language: "Sprache", question: "Frage", say: "In eigenen Worten", send: "Senden",
+    briefing: "So wurde es verstanden", noMap: "Noch keine Karte", skip: "Zur Frage", language: "Sprache", question: "Frage", say: "In eigenen Worten", send: "Senden",
     map: "Karte", camera: "Was die Drohne sieht", mission: "Mission", log: "Was geschah", tree: "Wie sie überlegt", gaps: "Was sie nicht weiß",
     hold: "Halt", continue: "Weiter", return: "Zurück", land: "Landen", abort: "Abbrechen", orders: "Befehle",
     answering: "Sie antworten", watching: "Sie sehen zu", take: "Von hier antworten", takeOver: "Das Antworten übernehmen", leave: "Übergeben",
@@ -42,7 +42,7 @@ const WORDS = {
     "log-question": "fragt", "log-answer": "Antwort", "log-order": "Befehl", "log-says": "sagt", "log-note": "Hinweis", "log-plan": "Plan", "log-begun": "Beginn", "log-ended": "Ende",
   },
   fr: {
-    skip: "Vers la question", language: "Langue", question: "Question", say: "Avec vos mots", send: "Envoyer",
+    briefing: "Ce qui a été compris", noMap: "Pas encore de carte", skip: "Vers la question", language: "Langue", question: "Question", say: "Avec vos mots", send: "Envoyer",
     map: "Carte", camera: "Ce que voit le drone", mission: "Mission", log: "Ce qui s'est passé", tree: "Comment il raisonne", gaps: "Ce qu'il ignore",
     hold: "Stop", continue: "Continuer", return: "Revenir", land: "Atterrir", abort: "Annuler", orders: "Ordres",
     answering: "Vous répondez", watching: "Vous regardez", take: "Répondre d'ici", takeOver: "Reprendre les réponses", leave: "Passer la main",
@@ -62,7 +62,7 @@ const WORDS = {
     "log-question": "demande", "log-answer": "réponse", "log-order": "ordre", "log-says": "dit", "log-note": "note", "log-plan": "plan", "log-begun": "début", "log-ended": "fin",
   },
   es: {
-    skip: "A la pregunta", language: "Idioma", question: "Pregunta", say: "Con sus palabras", send: "Enviar",
+    briefing: "Lo que se ha entendido", noMap: "Aún no hay mapa", skip: "A la pregunta", language: "Idioma", question: "Pregunta", say: "Con sus palabras", send: "Enviar",
     map: "Mapa", camera: "Lo que ve el dron", mission: "Misión", log: "Qué ha pasado", tree: "Cómo razona", gaps: "Lo que no sabe",
     hold: "Alto", continue: "Seguir", return: "Volver", land: "Aterrizar", abort: "Cancelar", orders: "Órdenes",
     answering: "Usted responde", watching: "Usted observa", take: "Responder desde aquí", takeOver: "Tomar las respuestas", leave: "Ceder el turno",
