@@ -93,8 +93,8 @@ const lines = [];
 function showLog(from, items) {
   lines.length = Math.min(lines.length, from);
   lines.push(...items);
-  const log = $("log"), below = log.scrollHeight - log.scrollTop - log.clientHeight < 40;
-  log.replaceChildren(...lines.slice(-200).map((l) => make("li", { class: l.kind }, make("time", { text: `${l.time_s.toFixed(0)} s` }), make("b", { text: say(`log-${l.kind}`) }), make("span", { text: l.text }))));
+  const log = $("log-box"), below = log.scrollHeight - log.scrollTop - log.clientHeight < 40;
+  $("log").replaceChildren(...lines.slice(-200).map((l) => make("li", { class: l.kind }, make("time", { text: `${l.time_s.toFixed(0)} s` }), make("b", { text: say(`log-${l.kind}`) }), make("span", { text: l.text }))));
   if (below) log.scrollTop = log.scrollHeight;
 }
 
