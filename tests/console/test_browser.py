@@ -36,7 +36,7 @@ def test_a_flown_mission_is_shown_and_nothing_leaves_the_machine(browser):
             page.wait_for_selector(".tree .node")
             assert page.locator("#gaps li").count() >= 2
             assert page.locator("#gaps li.asked").count() >= 1
-            assert page.locator("#log li.answer").count() >= 1
+            assert page.locator("#log li.line-answer").count() >= 1
             assert "east" in page.get_attribute("#map", "aria-label")
             colours = page.evaluate(
                 "() => new Set(new Uint32Array(document.querySelector('#map').getContext('2d')"
@@ -126,7 +126,10 @@ def test_a_lost_link_is_said_and_loses_no_answer(browser):
         link.connect_to_server()
         links.append(link)
 
-    with console() as one, opened(browser, one.url(), before=lambda page: page.route_web_socket("**/live", through)) as seen:
+    with (
+        console() as one,
+        opened(browser, one.url(), before=lambda page: page.route_web_socket("**/live", through)) as seen,
+    ):
         page = seen.page
         one.show(ASKED, 60.0)
         ready(page)

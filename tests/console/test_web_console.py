@@ -133,11 +133,12 @@ def test_a_watcher_sees_and_can_do_nothing(console):
 
 
 def closed_with(opened: ClientConnection) -> int:
-    with pytest.raises(ConnectionClosed) as error:
+    try:
         for _ in range(300):
             opened.recv(timeout=10)
-    assert error.value.rcvd is not None
-    return error.value.rcvd.code
+    except ConnectionClosed as error:
+        return error.rcvd.code if error.rcvd is not None else 0
+    raise AssertionError("the link was not closed")
 
 
 def test_a_wrong_token_opens_nothing(console):
@@ -154,7 +155,8 @@ def test_pages_of_other_origins_are_refused(console, origin):
 
 @pytest.mark.parametrize(
     "said",
-    ["", "[]", '{"kind":"reply"}', '{"kind":"order","n":1,"order":"explode"}', '{"kind":"order","n":1,"order":"hold","x":1}',
+    ["", "[]", '{"kind":"reply"}', '{"kind":"order","n":1,"order":"explode"}',
+     '{"kind":"order","n":1,"order":"hold","x":1}',
      '{"kind":"say","n":1,"text":"' + "a" * 401 + '"}', '{"kind":"reply","n":0,"question":"q1","reply":"yes"}'],
 )  # fmt: skip
 def test_malformed_messages_end_the_link_and_nothing_else(console, said):
@@ -208,7 +210,9 @@ def test_the_page_is_served_with_a_strict_policy(console):
         assert answer.headers["x-content-type-options"] == "nosniff"
 
 
-@pytest.mark.parametrize("path", ["/static/../server.py", "/static/%2e%2e%2fserver.py", "/server.py", "/docs", "/openapi.json"])
+@pytest.mark.parametrize(
+    "path", ["/static/../server.py", "/static/%2e%2e%2fserver.py", "/server.py", "/docs", "/openapi.json"]
+)
 def test_nothing_else_is_served(console, path):
     assert fetched(console, path).status == 404
 

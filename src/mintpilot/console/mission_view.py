@@ -15,11 +15,13 @@ from mintpilot.console.protocol import (
     PathPane,
     PosePane,
     QuestionPane,
+    TreePane,
+    TreeRound,
 )
 from mintpilot.console.question_pane import path_points, question_pane
 from mintpilot.console.steps import Progress
 from mintpilot.console.tree_pane import tree_pane
-from mintpilot.core.decisions import AskQuestion, FlyPlan, FlyTrajectory
+from mintpilot.core.decisions import AskQuestion, Explore, FlyPlan, FlyTrajectory, GoBack
 from mintpilot.core.events import (
     Asked,
     Deliberated,
@@ -55,6 +57,9 @@ _STEP_M = 0.1
 _MAP_S = 1.0
 """The map is drawn anew no more often than this, seconds of mission time."""
 
+_ROUNDS = 6
+"""Earlier trees that are kept."""
+
 
 class MissionView:
     """Keeps the panes of one mission. All methods are called by one thread.
@@ -77,6 +82,8 @@ class MissionView:
         self._explanations: dict[str, GapExplanation] = {}
         self._replies: list[tuple[Evidence, AnswerLine]] = []
         self._asked_gaps: frozenset[str] = frozenset()
+        self._tree_shown: TreePane | None = None
+        self._earlier: tuple[TreeRound, ...] = ()
         self._question: Question | None = None
         self._deadline_s = 0.0
         self._patience_s = 0.0
@@ -230,15 +237,19 @@ class MissionView:
 
     def _decided(self, event: DeliberationEnded) -> None:
         decision = event.decision
-        if isinstance(decision, FlyTrajectory):
+        if isinstance(decision, FlyTrajectory | Explore | GoBack):
             trajectory = decision.trajectory
-            if self._progress.plan is None:
+            if self._progress.plan is None and trajectory is not None:
                 self._path(trajectory.position_m, trajectory.duration_s)
         elif isinstance(decision, AskQuestion | FlyPlan):
             self._explanations |= {e.gap_id: e for e in decision.reasoning.explanations}
             self._asked = decision if isinstance(decision, AskQuestion) else None
 
     def _deliberated(self, event: Deliberated) -> None:
+        before, answers = self._tree_shown, tuple(line for _, line in self._replies)
+        if before is not None and before.root is not None and answers:
+            kept = TreeRound(round=before.round, root=before.root, answers=answers)
+            self._earlier = (*self._earlier, kept)[-_ROUNDS:]
         self._round, self._replies = event, []
         self._tree(event.certificate)
 
@@ -274,7 +285,9 @@ class MissionView:
             asked=self._asked_gaps,
             flown=flown,
             certificate=certificate,
+            earlier=self._earlier,
         )
+        self._tree_shown = pane
         self._board.put("tree", pane)
 
     def _show(self, *, again: bool = False) -> None:

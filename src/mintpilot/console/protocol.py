@@ -298,6 +298,14 @@ class GapLine(Message):
     gain_bits: float
 
 
+class TreeRound(Message):
+    """The tree of an earlier deliberation, with what the answers since then ruled out."""
+
+    round: int
+    root: TreeNode
+    answers: tuple[AnswerLine, ...]
+
+
 class TreePane(Message):
     """The tree of the latest deliberation."""
 
@@ -307,6 +315,7 @@ class TreePane(Message):
     answers: tuple[AnswerLine, ...]
     gaps: tuple[GapLine, ...]
     certificate: str = ""
+    earlier: tuple[TreeRound, ...] = ()
 
 
 class LogLine(Message):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from mintpilot.console.protocol import AnswerLine, GapLine, TreeNode, TreePane
+from mintpilot.console.protocol import AnswerLine, GapLine, TreeNode, TreePane, TreeRound
 from mintpilot.core.gap import KnowledgeGap
 from mintpilot.core.query import Evidence
 from mintpilot.core.tree import Certificate, GapExplanation, Mint
@@ -23,6 +23,7 @@ def tree_pane(
     asked: frozenset[str] = frozenset(),
     flown: str = "",
     certificate: Certificate | None = None,
+    earlier: tuple[TreeRound, ...] = (),
 ) -> TreePane:
     """The tree as it stands.
 
@@ -35,6 +36,7 @@ def tree_pane(
         asked: ids of the gaps that were asked about.
         flown: signature of the plan that was chosen, if any.
         certificate: why no more is asked; None while asking goes on.
+        earlier: trees of the deliberations before.
     """
     root = None
     if mint is not None:
@@ -49,6 +51,7 @@ def tree_pane(
         answers=tuple(line for _, line in replies),
         gaps=tuple(_gap(e, asked) for e in sorted(explanations, key=lambda e: (-e.gain_bits, e.gap_id))),
         certificate=certificate.text if certificate is not None else "",
+        earlier=earlier,
     )
 
 

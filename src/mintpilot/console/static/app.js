@@ -94,7 +94,7 @@ function showLog(from, items) {
   lines.length = Math.min(lines.length, from);
   lines.push(...items);
   const log = $("log-box"), below = log.scrollHeight - log.scrollTop - log.clientHeight < 40;
-  $("log").replaceChildren(...lines.slice(-200).map((l) => make("li", { class: l.kind }, make("time", { text: `${l.time_s.toFixed(0)} s` }), make("b", { text: say(`log-${l.kind}`) }), make("span", { text: l.text }))));
+  $("log").replaceChildren(...lines.slice(-200).map((l) => make("li", { class: `line-${l.kind}` }, make("time", { text: `${l.time_s.toFixed(0)} s` }), make("b", { text: say(`log-${l.kind}`) }), make("span", { text: l.text }))));
   if (below) log.scrollTop = log.scrollHeight;
 }
 
@@ -149,6 +149,7 @@ function use(lang) {
   if (last.steps) showSteps(last.steps.data);
   if (last.tree) showTree(last.tree.data);
   if (last.pose) { showBattery(last.pose.data); map.setPose(last.pose.data); }
+  else $("map").setAttribute("aria-label", say("noMap"));
   if (last.state) showLink(last.state);
   if (lines.length) showLog(lines.length, []);
 }

@@ -5,7 +5,9 @@ import { say } from "./words.js";
 
 export function showTree(pane) {
   $("certificate").textContent = pane.certificate;
-  $("answers").replaceChildren(...pane.answers.map((a, i) => make("p", {}, make("strong", { text: `${say("answerNo", i + 1)}: ` }), make("span", { text: `${a.question} – ${a.reply}` }))));
+  $("answers").replaceChildren(...pane.earlier.map((r) => make("details", { open: true },
+    make("summary", { text: r.answers.map((a) => `${a.question} – ${a.reply}`).join("; ") }), make("ul", { class: "tree" }, node(r.root, 0)))),
+  ...pane.answers.map((a, i) => make("p", {}, make("strong", { text: `${say("answerNo", i + 1)}: ` }), make("span", { text: `${a.question} – ${a.reply}` }))));
   $("tree").replaceChildren(pane.root ? make("ul", { class: "tree" }, node(pane.root, 0)) : make("p", { text: say("noTree") }));
   $("gaps").replaceChildren(...pane.gaps.map((g) => make("li", { class: g.asked ? "asked" : "" },
     make("strong", { text: g.words }), " ", make("span", { class: "chip", text: say(g.asked ? "asked" : "notAsked") }),
