@@ -37,10 +37,16 @@ COMMANDS = (
     "bench boxes",
     "bench gaps",
     "bench language",
+    "bench trust",
     "bench report",
     "bench export",
     "understand answer",
     "export",
+    "sim serve",
+    "log info",
+    "log recover",
+    "log export",
+    "runs",
 )
 HEAD = """# The command line
 

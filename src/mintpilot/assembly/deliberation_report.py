@@ -105,8 +105,10 @@ class DeliberationReport(_Report):
     """Null when nothing needs to be asked."""
     expected_questions: float
     """Mean over the answers."""
-    expected_questions_complete: bool
-    """False: a lower bound, since the work was bounded."""
+    expected_questions_played: int
+    """0: the mean is exact. Else it is over so many histories of answers, drawn from the belief."""
+    expected_questions_error: float
+    """Standard error of a played mean."""
     stop_reason: str | None
     """Why nothing is asked, where nothing is; else null."""
     certificate: str
@@ -149,7 +151,8 @@ def deliberation_report(
         plan_classes=_classes(decision.mint),
         query=_query(decision, question) if isinstance(decision, Ask) and question is not None else None,
         expected_questions=preview.expected_questions,
-        expected_questions_complete=preview.complete,
+        expected_questions_played=preview.played,
+        expected_questions_error=preview.error,
         stop_reason=str(fly.certificate.reason) if fly else None,
         certificate=fly.certificate.text if fly else "",
         plan_cost_s=fly.plan.cost_s if fly and fly.plan else None,

@@ -54,7 +54,8 @@ def lines_of(report: DeliberationReport) -> Iterator[str]:
             yield f"  {plan.probability:6.1%}  {cost}, in {_count(len(plan.hypotheses), 'case')}"
     yield ""
     yield from _decision_lines(report)
-    bound = "" if report.expected_questions_complete else " or more"
+    played = report.expected_questions_played
+    bound = "" if not played else f" (± {report.expected_questions_error:.2f}, over {played} played missions)"
     for note in report.left_out:
         yield f"A bound on the work was reached: {note}."
     yield f"Questions to be expected: {report.expected_questions:.2f}{bound}. Thought for {report.seconds:.2f} s."

@@ -150,6 +150,8 @@ class Certificate:
     where the chosen plan may fail or nothing is flown though something might have been."""
     text: str
     """The same in one plain sentence."""
+    mass_outside: float = 0.0
+    """Probability that the chosen plan fails, or is dearer than the best one by more than ``delta_c_s``."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

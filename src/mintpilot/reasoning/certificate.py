@@ -9,6 +9,7 @@ import numpy as np
 from mintpilot.core.gap import Belief
 from mintpilot.core.mission import AskingSettings
 from mintpilot.core.plan import Plan
+from mintpilot.core.tolerances import TOLERANCE
 from mintpilot.core.tree import Certificate, Mint, StopReason
 from mintpilot.reasoning.classes import cheapest_under, class_entropy_bits
 from mintpilot.reasoning.situation import may_fail, succeeds
@@ -18,7 +19,7 @@ _BECAUSE: Final = {
     StopReason.ONE_CLASS: "One way to fly is right with {top:.1%} probability.",
     StopReason.GOOD_FOR_ALL: "One plan succeeds whatever the answers would be.",
     StopReason.NO_GAIN: "No question that is left is worth asking (the best has a gain of {gain:.3f} bits).",
-    StopReason.BUDGET: "All {budget} questions that are allowed have been asked.",
+    StopReason.BUDGET: "All questions that are allowed have been asked.",
     StopReason.SILENCE: "The operator does not answer.",
     StopReason.INFEASIBLE: "Nothing can be flown under anything that is still possible.",
     StopReason.NEVER_ASKS: "This method does not ask.",
@@ -39,6 +40,17 @@ def bound_s(plan: Plan | None, mint: Mint, belief: Belief, settings: AskingSetti
     return float(max(0.0, (plan.cost_s - lowest[np.isfinite(lowest)]).max(initial=0.0)))
 
 
+def mass_outside(plan: Plan | None, mint: Mint, settings: AskingSettings) -> float:
+    """Probability that the plan fails, or is dearer than the best plan by more than ``delta_c_s``."""
+    probability = mint.belief.probability.ravel()[mint.support]
+    lowest = cheapest_under(mint).ravel()[mint.support]
+    if plan is None:
+        return float(probability[np.isfinite(lowest)].sum())
+    fine = succeeds(plan, mint.belief).ravel()[mint.support]
+    near = np.isinf(lowest) | (plan.cost_s - lowest <= settings.delta_c_s + TOLERANCE)
+    return float(max(0.0, 1.0 - probability[fine & near].sum() / max(probability.sum(), TOLERANCE)))
+
+
 def certify(
     reason: StopReason,
     plan: Plan | None,
@@ -50,21 +62,27 @@ def certify(
 ) -> Certificate:
     """The certificate for flying that plan (None: for staying safe) and asking no more."""
     top = mint.classes[0].probability
-    bound = bound_s(plan, mint, belief, settings)
-    because = _BECAUSE[reason].format(top=top, gain=best_gain_bits, budget=settings.max_questions)
+    bound, outside = bound_s(plan, mint, belief, settings), mass_outside(plan, mint, settings)
+    if reason is StopReason.GOOD_FOR_ALL and not bound <= settings.delta_c_s + TOLERANCE:
+        reason = StopReason.NO_GAIN  # delta_c is spent once: what costs more is not good for all
+    because = _BECAUSE[reason].format(top=top, gain=best_gain_bits)
     return Certificate(
         reason=reason,
         top_class_probability=top,
         entropy_bits=class_entropy_bits(mint),
         best_gain_bits=best_gain_bits,
         bound_s=bound,
-        text=f"{because} {_consequence(plan, bound)}",
+        text=f"{because} {_consequence(plan, bound, outside, settings.delta_c_s)}",
+        mass_outside=outside,
     )
 
 
-def _consequence(plan: Plan | None, bound: float) -> str:
+def _consequence(plan: Plan | None, bound: float, outside: float, delta_c_s: float) -> str:
     if plan is None:
         return "No safe plan is left to fly."
+    beyond = f"with {outside:.1%} probability it fails, or is more than {delta_c_s:g} s dearer than the best"
     if np.isinf(bound):
-        return f"The plan of {plan.cost_s:.1f} s is the best that is safe, but it may not succeed."
+        return f"The plan of {plan.cost_s:.1f} s is the best that is safe; {beyond}."
+    if bound > delta_c_s + TOLERANCE:
+        return f"The plan of {plan.cost_s:.1f} s is at most {bound:.1f} s dearer than the best; {beyond}."
     return f"No further answer would change the flight of {plan.cost_s:.1f} s by more than {bound:.1f} s."

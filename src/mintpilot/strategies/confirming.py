@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 from mintpilot.core.gap import PASSABLE, KnowledgeGap
 from mintpilot.core.plan import Plan
@@ -10,6 +11,8 @@ from mintpilot.core.ports import Ask, Decision, Situation
 from mintpilot.core.query import Literal, Query, Saying, SayingKind, is_refused
 from mintpilot.core.tolerances import TOLERANCE
 from mintpilot.core.tree import Mint, ScoredQuery, StopReason
+from mintpilot.elicitation.sentences import is_sayable
+from mintpilot.reasoning.certificate import bound_s
 from mintpilot.reasoning.safety import unknown_regions
 from mintpilot.strategies.flying import cautious_plan, fly, questions_left
 
@@ -28,20 +31,26 @@ def confirm_or_avoid(situation: Situation, mint: Mint, plan: Plan, reason: StopR
         return fly(situation, mint, plan, reason)
     around = cautious_plan(situation)
     saving_s = (around.cost_s if around else settings.failure_price_s) - plan.cost_s
-    if around is not None and saving_s <= settings.delta_c_s + TOLERANCE:
+    # Measured from the best plan under each hypothesis, not from this one: delta_c is spent once.
+    if around is not None and bound_s(around, mint, belief, settings) <= settings.delta_c_s + TOLERANCE:
         return fly(situation, mint, around, StopReason.GOOD_FOR_ALL)
     needed = {g: confirmations(belief.probability_of(g, PASSABLE), situation) for g in doubtful}
     total = sum(needed.values())
     chance = math.prod(belief.probability_of(g, PASSABLE) for g in doubtful)
     worth_s = chance * saving_s - settings.question_price_s * total
-    queries = [passable_query(gap) for gap in belief.gaps if gap.id in doubtful]
+    certain = [g for g in belief.gaps if g.id in doubtful and _is_certain(g, situation)]
+    if len(certain) > 1 and len(certain) == len(doubtful) and _sayable_together(certain):
+        queries, total = [passable_query(*certain)], max(needed.values())
+        worth_s = chance * saving_s - settings.question_price_s * total
+    else:
+        queries = [passable_query(gap) for gap in belief.gaps if gap.id in doubtful]
     if any(not _may_ask(query, situation) for query in queries) or worth_s <= TOLERANCE:
         return fly(situation, mint, around, StopReason.SILENCE if situation.silent else StopReason.NO_GAIN)
     if questions_left(situation) < total:
         return fly(situation, mint, around, StopReason.SILENCE if situation.silent else StopReason.BUDGET)
     # The likeliest to be refused goes first: a no there makes the other questions needless.
-    query = min(queries, key=lambda q: (belief.probability_of(q.gap_ids[0], PASSABLE), q.id))
-    yes = belief.probability_of(query.gap_ids[0], PASSABLE)
+    query = min(queries, key=lambda q: (_yes_probability(q, situation), q.id))
+    yes = _yes_probability(query, situation)
     error = settings.answer_error
     heard = (1 - error) * yes + error * (1 - yes)
     scored = ScoredQuery(
@@ -54,10 +63,24 @@ def confirm_or_avoid(situation: Situation, mint: Mint, plan: Plan, reason: StopR
     return Ask(scored=scored, mint=mint)
 
 
-def passable_query(gap: KnowledgeGap) -> Query:
-    """The query that asks for an explicit yes for one region."""
+def passable_query(*gaps: KnowledgeGap) -> Query:
+    """The query that asks for an explicit yes for one region, or for all of several at once."""
     saying = Saying(kind=SayingKind.VALUE, value=PASSABLE)
-    return Query(literals=(Literal(gap=gap.id, values=frozenset({PASSABLE}), saying=saying),))
+    return Query(literals=tuple(Literal(gap=gap.id, values=frozenset({PASSABLE}), saying=saying) for gap in gaps))
+
+
+def _sayable_together(gaps: Sequence[KnowledgeGap]) -> bool:
+    return is_sayable(passable_query(*gaps), {gap.id: gap for gap in gaps})
+
+
+def _is_certain(gap: KnowledgeGap, situation: Situation) -> bool:
+    """Whether a region is passable by inference: only the explicit yes is missing."""
+    return situation.belief.probability_of(gap.id, PASSABLE) >= 1 - situation.settings.alpha_safe
+
+
+def _yes_probability(query: Query, situation: Situation) -> float:
+    """Probability that everything that the query asks about is passable."""
+    return math.prod(situation.belief.probability_of(name, PASSABLE) for name in query.gap_ids)
 
 
 def confirmations(passable: float, situation: Situation) -> int:

@@ -9,7 +9,7 @@ import numpy as np
 from mintpilot.core.geometry import Floats
 from mintpilot.core.mission import CriticalityRule
 from mintpilot.core.plan import Plan
-from mintpilot.core.ports import Ask, Decision, QueryObjective, Situation, Strategy
+from mintpilot.core.ports import Ask, Decision, Fly, QueryObjective, Situation, Strategy
 from mintpilot.core.tolerances import TOLERANCE
 from mintpilot.core.tree import LeafReason, Mint, ScoredQuery, StopReason
 from mintpilot.elicitation.candidates import candidate_queries
@@ -19,6 +19,7 @@ from mintpilot.strategies.confirming import confirm_or_avoid
 from mintpilot.strategies.flying import (
     answerable,
     best_safe_plan,
+    expected_cost_s,
     fly,
     fly_cautiously,
     may_be_flown,
@@ -72,8 +73,7 @@ class MintStrategy(Strategy):
             plan = best_safe_plan(situation, mint)
             return fly(situation, mint, plan, StopReason.BUDGET, best_gain_bits=gain)
         if not ranked or ranked[0].score <= 0:
-            plan = best_safe_plan(situation, mint)
-            return replace(fly(situation, mint, plan, StopReason.NO_GAIN, best_gain_bits=gain), proposed=proposed)
+            return replace(_without_gain(situation, mint, gain), proposed=proposed)
         return Ask(
             scored=ranked[0],
             alternatives=ranked[1 : 1 + ALTERNATIVES],
@@ -81,6 +81,24 @@ class MintStrategy(Strategy):
             proposed=proposed,
             bound_bits=bound_bits,
         )
+
+
+def _without_gain(situation: Situation, mint: Mint, gain: float) -> Ask | Fly:
+    """No query divides the plan classes: the safe plan that loses least, unless a missing yes makes a better one.
+
+    A region that is certain by inference but has no explicit yes is asked about when the plan needs it (method, section
+    6), never a reason to give up.
+    """
+    safe = best_safe_plan(situation, mint)
+    plans = [c.plan for c in mint.classes if c.plan is not None]
+    best = min(plans, key=lambda p: (expected_cost_s(situation, mint, p), p.cost_s, p.signature), default=None)
+    if best is not None and not may_be_flown(situation, best):
+        stays_s = situation.settings.failure_price_s if safe is None else expected_cost_s(situation, mint, safe)
+        if stays_s - expected_cost_s(situation, mint, best) > situation.settings.delta_c_s + TOLERANCE:
+            decision = confirm_or_avoid(situation, mint, best, StopReason.NO_GAIN)
+            if isinstance(decision, Ask):
+                return decision
+    return fly(situation, mint, safe, StopReason.NO_GAIN, best_gain_bits=gain)
 
 
 def _rank(situation: Situation, mint: Mint, regret_s: Floats, objective: QueryObjective) -> tuple[ScoredQuery, ...]:
