@@ -29,6 +29,8 @@ MOST_CLIENTS = 40
 """Links at one time."""
 _COMMANDS_AT_ONCE, _COMMANDS_A_SECOND = 20, 5.0
 _START_S, _STOP_S = 10.0, 5.0
+_LAST_S = 0.3
+"""Browsers get so long to hear how the mission ended, seconds."""
 _REFUSED, _TOO_MUCH, _FULL = 4401, 4429, 4503
 """Codes with which a WebSocket is closed."""
 _TYPES: Final = {"html": "text/html", "css": "text/css", "js": "text/javascript", "svg": "image/svg+xml"}
@@ -91,6 +93,8 @@ class ConsoleServer:
 
     def close(self) -> None:
         """Ends all links. Safe to call again."""
+        if self._links and self._thread.is_alive() and not self._server.should_exit:
+            threading.Event().wait(_LAST_S)
         self._server.should_exit = True
         self._thread.join(timeout=_STOP_S)
         self._socket.close()

@@ -126,6 +126,7 @@ async function showEvidence(i, data, blob) {
 
 function showLink(state) {
   const box = $("link");
+  if (state === "lost" && last.mission?.data.verdict) state = "up"; // the mission is over, and the program with it
   box.className = state;
   document.body.classList.toggle("cut", state !== "up");
   if (state === "up") box.replaceChildren();
