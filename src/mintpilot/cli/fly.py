@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable
+from contextlib import ExitStack
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
@@ -11,6 +12,7 @@ from typing import TYPE_CHECKING
 
 from mintpilot.cli.exits import ExitCode, hush
 from mintpilot.cli.interrupts import stop_if_wanted
+from mintpilot.cli.web_page import PageOptions, ServedPage
 from mintpilot.core.errors import InputError
 
 if TYPE_CHECKING:
@@ -27,7 +29,7 @@ class FlightOptions:
     """How a mission is flown, as the command line says it."""
 
     operator: str | None
-    """``terminal`` or ``scripted``; None: the terminal's where somebody is there."""
+    """``terminal``, ``console`` or ``scripted``; None: the terminal's where somebody is there."""
     vehicle: str
     strategy: str
     seed: int | None
@@ -44,6 +46,8 @@ class FlightOptions:
     """What makes objects of pictures, by name; None: as the mission file says."""
     accept_failsafes: bool = False
     """Fly a real vehicle whose autopilot's fail-safes are not as they should be."""
+    page: PageOptions | None = None
+    """Where the web page is served, beside whoever else answers; None: it is not."""
 
 
 def fly(path: Path, options: FlightOptions) -> ExitCode:
@@ -60,16 +64,21 @@ def fly(path: Path, options: FlightOptions) -> ExitCode:
     mission = read_mission(path)
     errors = LenientConsole(stderr=True)
     out = options.out or new_run_path(Path("runs"), mission.name, datetime.now(UTC))
-    with Narrator(errors) as narrator:
+    with ExitStack() as stack, Narrator(errors) as narrator:
+        served = ServedPage(options.page, errors, stack) if options.page is not None else None
 
         def tell(event: Event) -> None:
             narrator(event)
+            if served is not None:
+                served.record(event)
             stop_if_wanted(event)
 
         try:
             record = run_mission(
                 path,
-                operator=_operator(options.operator, errors, narrator, real=options.vehicle.startswith("mavlink:")),
+                operator=_operators(
+                    options.operator, errors, narrator, served, real=options.vehicle.startswith("mavlink:")
+                ),
                 vehicle=options.vehicle,
                 strategy=options.strategy,
                 strategy_arguments=arguments,
@@ -80,7 +89,7 @@ def fly(path: Path, options: FlightOptions) -> ExitCode:
                 lang=options.lang,
                 perception=options.perception,
                 accept_failsafes=options.accept_failsafes,
-                briefs=_somebody(errors) and options.operator != "scripted",
+                briefs=served is not None or (_somebody(errors) and options.operator != "scripted"),
             )
         except KeyboardInterrupt:
             narrator.rest()
@@ -100,6 +109,16 @@ def fly(path: Path, options: FlightOptions) -> ExitCode:
 def _somebody(console: Console) -> bool:
     """Whether a person sits at the terminal."""
     return sys.stdin is not None and sys.stdin.isatty() and console.is_terminal
+
+
+def _operators(
+    choice: str | None, console: Console, narrator: Narrator, served: ServedPage | None, *, real: bool
+) -> tuple[Callable[[Talk], Operator] | str, ...]:
+    """Whoever answers: the page first, and the terminal beside it where somebody is there."""
+    pages = () if served is None else (served.operator,)
+    if pages and (choice == "console" or not _somebody(console)):
+        return pages
+    return (*pages, _operator(choice, console, narrator, real=real))
 
 
 def _operator(

@@ -35,7 +35,8 @@ Seed: TypeAlias = Annotated[int | None, Parameter(name="--seed")]
 StrategyArgs: TypeAlias = Annotated[list[str] | None, Parameter(name="--strategy-arg", negative="")]
 Llm: TypeAlias = Annotated[str | None, Parameter(name="--llm")]
 Lang: TypeAlias = Annotated[str | None, Parameter(name="--lang")]
-OperatorName: TypeAlias = Literal["terminal", "scripted"]
+OperatorName: TypeAlias = Literal["terminal", "console", "scripted"]
+Port: TypeAlias = Annotated[int | None, Parameter(validator=validators.Number(gte=0, lte=65535))]
 VehicleName: TypeAlias = Literal["mujoco", "kinematic"]
 
 
@@ -66,7 +67,7 @@ def demo(
 ) -> ExitCode:
     """Fly one of the paper's two missions and show it.
 
-    On a terminal the drone asks you.
+    On a terminal the drone asks you; where a browser can be opened, on a page as well.
 
     Args:
         mission: The warehouse on fire, or the boxes of which one holds the medicine.
@@ -82,9 +83,11 @@ def demo(
     """
     from mintpilot.cli.demos import demo_path
     from mintpilot.cli.fly import FlightOptions, fly
+    from mintpilot.cli.web_page import PageOptions, browser_can_open
 
     options = FlightOptions(
         operator="scripted" if headless else None,
+        page=PageOptions(opens=True, patience_s=20.0) if not headless and not json and browser_can_open() else None,
         vehicle=vehicle,
         strategy="mint",
         seed=seed,
@@ -116,6 +119,10 @@ def run(
     lang: Lang = None,
     perception: str | None = None,
     accept_failsafes: Flag = False,
+    host: str | None = None,
+    port: Port = None,
+    tls_cert: Path | None = None,
+    tls_key: Path | None = None,
     out: Path | None = None,
     json: Json = False,
     debug: Flag = False,
@@ -124,8 +131,8 @@ def run(
 
     Args:
         mission: The mission file (YAML).
-        operator: Who answers: you at this terminal, or a script that knows the truth. Default: you, where there is a
-            terminal.
+        operator: Who answers: you at this terminal, you on a web page (console), or a script that knows the truth.
+            Default: you, where there is a terminal.
         vehicle: mujoco: physics and camera; kinematic: a fast point mass; or a real one by its address, e.g.
             mavlink://udpin:127.0.0.1:14540.
         strategy: How it decides what to ask.
@@ -135,15 +142,26 @@ def run(
         lang: Language of the questions: en, de, fr or es. Default: as the file says.
         perception: Who makes objects of pictures: geometric, segments, or a plug-in's. Default: as the file says.
         accept_failsafes: Fly a real vehicle although its autopilot's fail-safes are not as they should be.
+        host: Of the web page: where it is served. Default: 127.0.0.1, for this machine only; elsewhere with TLS only.
+        port: Of the web page. Default: any that is free.
+        tls_cert: Of the web page: its certificate, PEM.
+        tls_key: Of the web page: the certificate's key, PEM.
         out: Run folder; a new one under ./runs by default.
         json: Print the outcome, questions, gaps and figures as one JSON object, and nothing else, on standard output.
             The whole record is in the run folder.
         debug: Show the traceback of an error.
     """
     from mintpilot.cli.fly import FlightOptions, fly
+    from mintpilot.cli.web_page import PageOptions
 
+    page = None
+    if operator == "console":
+        page = PageOptions(host=host or "127.0.0.1", port=port or 0, tls_cert=tls_cert, tls_key=tls_key)
+    elif (host, port, tls_cert, tls_key) != (None, None, None, None):
+        return fail("--host, --port, --tls-cert and --tls-key go with --operator console only", as_json=json)
     options = FlightOptions(
         operator=operator,
+        page=page,
         vehicle=vehicle,
         strategy=strategy,
         strategy_args=tuple(strategy_arg or ()),

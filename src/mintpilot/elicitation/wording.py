@@ -92,9 +92,9 @@ def _flight(plan: Plan | None, sure: bool, about: tuple[KnowledgeGap, ...], left
             return f"{i} fly around {'it' if len(about) == 1 else 'them'}"
         return f"{i} fly through {'it' if len(about) == 1 else joined([subject_of(g) for g in entered], 'and')}"
     if kinds == {GapKind.PRESENCE}:
-        left = {one.stop.gap for one in plan.leaves_undone}
-        visited = [g for g in about if g.id not in plan.skips | left]
-        if len(about) == 1 and about[0].id in left:
+        undone = {one.stop.gap for one in plan.leaves_undone}
+        visited = [g for g in about if g.id not in plan.skips | undone]
+        if len(about) == 1 and about[0].id in undone:
             return f"{i} cannot reach it, and do what else I can"
         if not visited:
             return f"{i} fly past it" if len(about) == 1 else f"{i} fly past them"
