@@ -16,7 +16,7 @@ from playwright.sync_api import Browser, sync_playwright
 
 from mintpilot import run_mission
 from mintpilot.assembly.talk import Talk
-from mintpilot.cli.demos import demo_path
+from mintpilot.cli.demos import DEMOS, demo_path
 from mintpilot.console import WebConsole
 from mintpilot.core.events import Event, FrameSeen, Stepped
 from mintpilot.core.inputs import Ticked
@@ -84,45 +84,41 @@ def latency(browser: Browser) -> tuple[np.ndarray, float]:
     return np.asarray([at - sent[time_s] for time_s, at in arrived.items() if time_s in sent]), share
 
 
-def to_motion(browser: Browser) -> list[float]:
-    """Milliseconds from the press of a key to the next motion, in the demo missions."""
-    found = []
-    for mission in ("medicine", "fire-warehouse"):
-        consoles: list[WebConsole] = []
-        served, moved = threading.Event(), []
+def to_motion(browser: Browser, mission: str) -> float:
+    """Milliseconds from the press of a key to the next motion, in a demo mission."""
+    consoles: list[WebConsole] = []
+    served, moved = threading.Event(), []
 
-        def operator(talk: Talk) -> WebConsole:
-            consoles.append(WebConsole(understand=talk.understand, order_of=talk.order_of))
-            served.set()
-            consoles[0].wait_for_somebody(60.0)
-            return consoles[0]
+    def operator(talk: Talk) -> WebConsole:
+        consoles.append(WebConsole(understand=talk.understand, order_of=talk.order_of))
+        served.set()
+        consoles[0].wait_for_somebody(60.0)
+        return consoles[0]
 
-        def note(event: Event) -> None:
-            if isinstance(event, Stepped) and "Move" in event.directives:
-                moved.append(time.perf_counter())
-            consoles[0].record(event)
+    def note(event: Event) -> None:
+        if isinstance(event, Stepped) and "Move" in event.directives:
+            moved.append(time.perf_counter())
+        consoles[0].record(event)
 
-        flight = threading.Thread(
-            target=lambda name=mission: run_mission(
-                demo_path(name), vehicle="kinematic", operator=operator, progress=note
-            )
-        )
-        flight.start()
-        served.wait()
-        page = browser.new_page()
-        page.goto(consoles[0].url())
-        pressed = 0.0
-        while flight.is_alive() and not (pressed and any(at > pressed for at in moved)):
-            if page.query_selector("#card .answer:not(:disabled)"):
-                page.wait_for_timeout(700)
-                pressed = time.perf_counter()
-                page.keyboard.press("y")
-            page.wait_for_timeout(300)
-        found.append(1000 * min(at - pressed for at in moved if at > pressed))
-        page.click("#orders .abort")
-        flight.join()
-        page.close()
-        consoles[0].close()
+    flight = threading.Thread(
+        target=lambda: run_mission(demo_path(mission), vehicle="kinematic", operator=operator, progress=note)
+    )
+    flight.start()
+    served.wait()
+    page = browser.new_page()
+    page.goto(consoles[0].url())
+    pressed = 0.0
+    while flight.is_alive() and not (pressed and any(at > pressed for at in moved)):
+        if page.query_selector("#card .answer:not(:disabled)"):
+            page.wait_for_timeout(700)
+            pressed = time.perf_counter()
+            page.keyboard.press("y")
+        page.wait_for_timeout(300)
+    found = 1000 * min(at - pressed for at in moved if at > pressed)
+    page.click("#orders .abort")
+    flight.join()
+    page.close()
+    consoles[0].close()
     return found
 
 
@@ -133,10 +129,10 @@ def main() -> None:
         browser = playwright.chromium.launch(executable_path="/usr/bin/chromium", args=FLAGS)
         poses, share = latency(browser)
         print(
-            f"pose from simulator to browser: p50 {np.percentile(poses, 50):.0f} ms, p95 {np.percentile(poses, 95):.0f} ms"
-            f" (n {len(poses)}); share of one core {100 * share:.1f} %"
+            f"pose from simulator to browser: p50 {np.percentile(poses, 50):.0f} ms, p95 "
+            f"{np.percentile(poses, 95):.0f} ms (n {len(poses)}); share of one core {100 * share:.1f} %"
         )
-        print("answer to next motion:", ", ".join(f"{ms:.0f} ms" for ms in to_motion(browser)))
+        print("answer to next motion:", ", ".join(f"{to_motion(browser, name):.0f} ms" for name in DEMOS))
         browser.close()
 
 
