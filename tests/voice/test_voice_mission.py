@@ -9,7 +9,7 @@ import pytest
 
 from mintpilot.assembly.api import run_mission
 from mintpilot.assembly.talk import Talk
-from mintpilot.assembly.voiced import LoopbackParts, WorldKnowledge, loopback_operator
+from mintpilot.assembly.voiced import LoopbackParts, loopback_operator
 from mintpilot.assembly.worlds import build_world
 from mintpilot.core.geometry import Floats
 from mintpilot.mission_file.reader import read_mission

@@ -13,7 +13,6 @@ from mintpilot.assembly.registry import load
 from mintpilot.assembly.talk import Talk
 from mintpilot.assembly.worlds import World
 from mintpilot.core.gap import KnowledgeGap
-from mintpilot.core.ports import Operator
 from mintpilot.core.predicate import Combine, Literal, SayingKind
 from mintpilot.core.query import Query
 from mintpilot.elicitation.candidates import gap_literals
@@ -97,7 +96,7 @@ def loopback_operator(
     parts: LoopbackParts,
     *,
     rng: np.random.Generator,
-    conditions: Conditions = Conditions(),
+    conditions: Conditions,
 ) -> tuple[VoiceOperator, LoopbackPerson]:
     """An operator whose person is simulated, by sound only."""
     person = LoopbackPerson(
@@ -109,7 +108,7 @@ def loopback_operator(
     return operator, person
 
 
-def real_parts(link: SoundLink) -> VoiceParts:
+def real_parts(link: SoundLink, *, lang: str = "en") -> VoiceParts:
     """The recognisers, voice activity and speech that are installed.
 
     Raises:
@@ -119,15 +118,14 @@ def real_parts(link: SoundLink) -> VoiceParts:
     first, second = (load("recogniser", name)() for name in ("whisper", "moonshine"))
     activity = load("activity", "silero")()
     return VoiceParts(
-        speech=load("speech", "piper")(), ear=Ear(first=first, second=second), activity=activity, link=link
+        speech=load("speech", "piper" if lang == "en" else "espeak")(),
+        ear=Ear(first=first, second=second),
+        activity=activity,
+        link=link,
     )
 
 
-def voice_operator(link: SoundLink, caption: Callable[[str], object]) -> Callable[[Talk], Operator]:
-    """What makes a voice operator of a mission's language. Raises as `real_parts`."""
-    parts = real_parts(link)
-
-    def made(talk: Talk) -> Operator:
-        return VoiceOperator(parts, understand=talk.understand, order_of=talk.order_of, caption=caption, lang=talk.lang)
-
-    return made
+def voice_operator(link: SoundLink, talk: Talk, caption: Callable[[str], object]) -> VoiceOperator:
+    """A voice operator of a mission's language, made of the installed parts. Raises as `real_parts`."""
+    parts = real_parts(link, lang=talk.lang)
+    return VoiceOperator(parts, understand=talk.understand, order_of=talk.order_of, caption=caption, lang=talk.lang)

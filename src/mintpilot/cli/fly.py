@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
+from contextlib import ExitStack
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
@@ -16,6 +16,7 @@ from mintpilot.core.errors import InputError
 if TYPE_CHECKING:
     from rich.console import Console
 
+    from mintpilot.assembly.api import AnyOperator
     from mintpilot.assembly.talk import Talk
     from mintpilot.cli.progress import Narrator
     from mintpilot.core.events import Event
@@ -27,7 +28,7 @@ class FlightOptions:
     """How a mission is flown, as the command line says it."""
 
     operator: str | None
-    """``terminal`` or ``scripted``; None: the terminal's where somebody is there."""
+    """``terminal``, ``voice`` or ``scripted``; None: the terminal's where somebody is there."""
     vehicle: str
     strategy: str
     seed: int | None
@@ -58,7 +59,7 @@ def fly(path: Path, options: FlightOptions) -> ExitCode:
     mission = read_mission(path)
     errors = LenientConsole(stderr=True)
     out = options.out or new_run_path(Path("runs"), mission.name, datetime.now(UTC))
-    with Narrator(errors) as narrator:
+    with Narrator(errors) as narrator, ExitStack() as closing:
 
         def tell(event: Event) -> None:
             narrator(event)
@@ -67,7 +68,7 @@ def fly(path: Path, options: FlightOptions) -> ExitCode:
         try:
             record = run_mission(
                 path,
-                operator=_operator(options.operator, errors, narrator),
+                operator=_operator(options.operator, errors, narrator, closing),
                 vehicle=options.vehicle,
                 strategy=options.strategy,
                 strategy_arguments=arguments,
@@ -99,8 +100,10 @@ def _somebody(console: Console) -> bool:
     return sys.stdin is not None and sys.stdin.isatty() and console.is_terminal
 
 
-def _operator(choice: str | None, console: Console, narrator: Narrator) -> Callable[[Talk], Operator] | str:
-    """What makes the person at the terminal an operator, or the name of the scripted one."""
+def _operator(
+    choice: str | None, console: Console, narrator: Narrator, closing: ExitStack
+) -> AnyOperator | tuple[AnyOperator, ...]:
+    """What makes the person here an operator, or the name of the scripted one. By voice, keys answer as well."""
     if choice == "scripted" or (choice is None and not _somebody(console)):
         return "scripted"
     if sys.stdin is None:
@@ -114,4 +117,17 @@ def _operator(choice: str | None, console: Console, narrator: Narrator) -> Calla
         )
         return Attended(person, narrator)
 
-    return made
+    if choice != "voice":
+        return made
+    from mintpilot.assembly.voiced import voice_operator
+    from mintpilot.voice.devices import PortAudioLink
+
+    link = PortAudioLink()
+    closing.callback(link.close)
+
+    def spoken(talk: Talk) -> Operator:
+        person = voice_operator(link, talk, lambda text: console.print(f"[spoken] {text}", markup=False))
+        closing.callback(person.close)
+        return person
+
+    return (spoken, made) if _somebody(console) else spoken

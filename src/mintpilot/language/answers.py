@@ -97,7 +97,7 @@ def confirmation_in(text: str, lang: str = "en") -> bool | None:
     if lang not in ANSWER_WORDS:
         raise UnknownNameError("language", lang, ANSWER_WORDS)
     whole, known = utterance(spoken(text)), ANSWER_WORDS[lang]
-    if len(text) > LONGEST or vetoes(text, lang, Reply.YES) and whole not in listed(known.no):
+    if len(text) > LONGEST or (vetoes(text, lang, Reply.YES) and whole not in listed(known.no)):
         return None
     return True if whole in listed(known.confirm) else False if whole in listed(known.no) else None
 

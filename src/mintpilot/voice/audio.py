@@ -76,7 +76,8 @@ def to_pcm16(samples: Floats) -> bytes:
 
 def clean(samples: Floats) -> Floats:
     """Finite samples: what is no number is silence, what is beyond full scale is clipped."""
-    return np.clip(np.nan_to_num(np.asarray(samples, float).ravel(), nan=0.0, posinf=1.0, neginf=-1.0), -1.0, 1.0)
+    finite: Floats = np.nan_to_num(np.asarray(samples, float).ravel(), nan=0.0, posinf=1.0, neginf=-1.0)
+    return np.clip(finite, -1.0, 1.0)
 
 
 def resampled(samples: Floats, rate_hz: int) -> Floats:

@@ -34,7 +34,7 @@ def piper() -> Say:
     voice = PiperVoice.load(str(model), f"{model}.json")
 
     def say(text: str, lang: str, speed: float) -> bytes:  # noqa: ARG001
-        made = [c for c in voice.synthesize(text, SynthesisConfig(length_scale=1 / speed))]
+        made = list(voice.synthesize(text, SynthesisConfig(length_scale=1 / speed)))
         if not made:
             return b""
         samples = np.concatenate([chunk.audio_float_array for chunk in made]).astype(float)

@@ -75,10 +75,15 @@ class Mouth:
         self._kept: OrderedDict[tuple[str, float], Floats] = OrderedDict()
         self._pool = ThreadPoolExecutor(1, thread_name_prefix="mintpilot speech")
 
-    @property
-    def is_busy(self) -> bool:
-        """Whether something is said, or waits to be."""
-        return bool(self._waiting) or self._making is not None or self._playing is not None
+    def will_say(self, question: str) -> bool:
+        """Whether something of that question is being said, or waits to be."""
+        now = (self._making[0] if self._making is not None else None, self._playing, *self._waiting)
+        return any(said is not None and said.question == question for said in now)
+
+    def interrupt(self) -> None:
+        """Stops what is playing; it does not count as said."""
+        self._link.stop()
+        self._playing = None
 
     def say(self, said: Said) -> None:
         """Says it when its turn has come; an order's text at once. The oldest of too many notices is left out."""

@@ -165,6 +165,7 @@ class VoiceOperator(Operator):
         self._mouth.close()
         self._pool.shutdown(wait=True, cancel_futures=True)
         self._parts.link.close()
+        getattr(self._parts.speech, "close", lambda: None)()
 
     def _say(self, text: str, priority: Priority, question: str = "") -> None:
         self._caption(text)
@@ -208,7 +209,7 @@ class VoiceOperator(Operator):
         turn, interrupts = self._turn, self._parts.link.is_playing(time_s)
         self._began = turn.key if turn is not None and not interrupts else None
         if interrupts:
-            self._parts.link.stop()
+            self._mouth.interrupt()
 
     def _recognise(self, utterance: Utterance) -> None:
         while len(self._heard) >= _MOST_AT_ONCE:
@@ -240,13 +241,13 @@ class VoiceOperator(Operator):
             self._mouth.hush()
             self._to_confirm = None
             return [self._ordered(Order.HOLD, hearing.text, time_s)]
+        turn = self._turn
         if not hearing.text or self._lang != HEARD:
-            return []
+            return [] if turn is None else self._spoke_too_soon(turn)
         if orders[0] is not None and orders[0] is orders[1] and hearing.is_sure:
             return self._hold_first(orders[0], hearing.text, time_s)
         if self._to_confirm is not None:
             return self._confirmed(hearing, time_s)
-        turn = self._turn
         if turn is None:
             return []
         if key is None or turn.key != key or readings is None:
@@ -277,7 +278,7 @@ class VoiceOperator(Operator):
 
     def _spoke_too_soon(self, turn: _Turn) -> list[OperatorInput]:
         """What began before the question was said answers nothing; it is asked again where speech was cut off."""
-        if not turn.is_said and not self._mouth.is_busy:
+        if not turn.is_said and not self._mouth.will_say(turn.question.id):
             self._repeat(turn)
         return []
 
