@@ -209,6 +209,7 @@ def test_in_other_languages_only_keys_answer() -> None:
     scene = Scene(lang="de")
     scene.asks()
     assert scene.says("yes") == scene.says("no") == []
+    assert _orders(scene.says("stop")) == [Order.HOLD]
     scene.operator.close()
 
 

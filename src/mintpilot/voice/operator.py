@@ -13,7 +13,7 @@ from mintpilot.core.ports import Operator, Understand
 from mintpilot.core.query import Answer, Order, Question, Reply, Standing
 from mintpilot.core.reading import AnsweredBy, Reading, ReadingKind
 from mintpilot.interaction.answers import answer_of
-from mintpilot.language.answers import confirmation_in
+from mintpilot.language.answers import confirmation_in, order_in
 from mintpilot.voice.hearing import Ear, Hearing, Segmenter, Utterance
 from mintpilot.voice.mouth import Mouth, Priority, Said, VoiceSettings
 from mintpilot.voice.ports import Activity, SoundLink, Speech
@@ -236,8 +236,9 @@ class VoiceOperator(Operator):
     def _react(
         self, hearing: Hearing, readings: tuple[Reading, Reading] | None, key: tuple[str, int] | None, time_s: float
     ) -> list[OperatorInput]:
-        orders = (self._order_of(hearing.text), self._order_of(hearing.second))
-        if Order.HOLD in orders:
+        texts = (hearing.text, hearing.second)
+        orders = [self._order_of(text) for text in texts]
+        if Order.HOLD in (*orders, *(order_in(text, HEARD) for text in texts)):
             self._mouth.hush()
             self._to_confirm = None
             return [self._ordered(Order.HOLD, hearing.text, time_s)]
