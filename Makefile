@@ -2,10 +2,11 @@
 
 MISSION ?= fire-warehouse
 ARGS ?=
+SAMPLE ?= 300
 BIN := .venv/bin
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test setup setup-run fix check bench table docs results ci clean
+.PHONY: help demo test setup setup-run fix check bench table mutants docs results ci clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-9s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -44,12 +45,18 @@ results: bench ## measure everything that docs/results.md states but the tables 
 table: setup ## fly Table 1, the boxes and the gaps as far as no record is there yet (hours), and write docs/results.md
 	@for part in table1 boxes gaps; do $(BIN)/python -m bench.$$part || exit 1; done
 
-docs: setup ## generate docs/cli.md and docs/mission.schema.json
+mutants: setup ## try small faults against the tests (SAMPLE=300; goes on where it stopped) and write docs/results.md
+	@[ -f runs/mutants/map.json ] || $(BIN)/python -m bench.mutants --map
+	@$(BIN)/python -m bench.mutants --sample $(SAMPLE) --keep
+
+docs: setup ## generate docs/cli.md, docs/mission-file.md and the schema, and build the site into site/
 	@$(BIN)/python scripts/make_docs.py
+	@NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict --quiet
+	@$(BIN)/python scripts/check_site.py site
 
 ci: ## what the continuous integration runs
 	@.ci/run
 
 clean: ## remove .venv, caches and runs
-	@rm -rf .venv runs .mypy_cache .ruff_cache .pytest_cache .hypothesis .import_linter_cache
+	@rm -rf .venv runs site .mypy_cache .ruff_cache .pytest_cache .hypothesis .import_linter_cache
 	@find src tests bench -name __pycache__ -type d -prune -exec rm -rf {} +

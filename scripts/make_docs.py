@@ -42,6 +42,11 @@ COMMANDS = (
     "bench export",
     "understand answer",
     "export",
+    "sim serve",
+    "log info",
+    "log recover",
+    "log export",
+    "runs",
 )
 HEAD = """# The command line
 

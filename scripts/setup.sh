@@ -16,7 +16,7 @@ readonly GL_SPARE=libosmesa6 # a second way to draw; newer systems have it no mo
 
 case $LEVEL in
     run) EXTRAS=sim ;;
-    dev) EXTRAS=sim,dev,bench ;;
+    dev) EXTRAS=sim,dev,bench,docs ;;
     *) echo "setup: '$LEVEL' must be run or dev" >&2; exit 2 ;;
 esac
 
@@ -111,7 +111,10 @@ if ! "$VENV/bin/python" -m pip install --quiet --quiet --disable-pip-version-che
     exit 3
 fi
 say "compiling the search (kept for later runs)"
-"$VENV/bin/mintpilot" plan examples/my-building/mission.yaml >/dev/null 2>&1 \
-    || say "the example could not be planned; mintpilot doctor says more"
+compile() {
+    "$VENV/bin/python" -c "from mintpilot.planning.warm import warm_up; warm_up()" \
+        && "$VENV/bin/mintpilot" plan examples/my-building/mission.yaml
+}
+compile >/dev/null 2>&1 || say "the example could not be planned; mintpilot doctor says more"
 fingerprint > "$VENV/.made-for-$LEVEL"
 say "done"

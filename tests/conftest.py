@@ -2,11 +2,22 @@
 
 import signal
 
+import pytest
 
-def pytest_configure() -> None:
+
+def pytest_configure(config: pytest.Config) -> None:
     """Ctrl-C works in the programs that tests start, also where the tests themselves run in the background.
 
     A shell without job control starts background work with Ctrl-C ignored, and children inherit that.
     """
     if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
         signal.signal(signal.SIGINT, signal.default_int_handler)
+    if getattr(config.option, "dist", "no") != "no" and not hasattr(config, "workerinput"):
+        _compile_once()
+
+
+def _compile_once() -> None:
+    """Several workers that begin together would each compile the search."""
+    from mintpilot.planning.warm import warm_up
+
+    warm_up()

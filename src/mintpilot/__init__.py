@@ -19,7 +19,7 @@ _PLACES = {
     "DeliberationReport": "mintpilot.assembly.deliberation_report",
     "MissionFile": "mintpilot.mission_file.schema",
     "MissionRecord": "mintpilot.recording.record",
-    "check_mission": "mintpilot.assembly.api",
+    "check_mission": "mintpilot.assembly.validation",
     "plan_mission": "mintpilot.assembly.api",
     "read_mission": "mintpilot.mission_file.reader",
     "read_record": "mintpilot.recording.record",

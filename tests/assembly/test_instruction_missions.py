@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 import yaml
 
-from mintpilot.assembly.api import check_mission, plan_mission, run_mission
+from mintpilot.assembly.api import plan_mission, run_mission
 from mintpilot.assembly.understanding import understand_instructions
+from mintpilot.assembly.validation import check_mission
 from mintpilot.core.events import Event, LegFlown
 from mintpilot.core.mission import Outcome
 from mintpilot.language.doubles import FunctionModel

@@ -10,7 +10,8 @@ from hypothesis import strategies as st
 from PIL import Image
 from tests.oracles.clearance import densely
 
-from mintpilot.assembly.api import check_mission, run_mission
+from mintpilot.assembly.api import run_mission
+from mintpilot.assembly.validation import check_mission
 from mintpilot.assembly.worlds import build_world
 from mintpilot.core.events import LegFlown
 from mintpilot.core.mission import Outcome

@@ -10,9 +10,10 @@ import pytest
 from tests.language import questions
 from tests.mission.scenes import hall
 
-from mintpilot.assembly.api import check_mission, plan_mission, run_mission
+from mintpilot.assembly.api import plan_mission, run_mission
 from mintpilot.assembly.guarded_model import MOST_FAILURES, REST_S, GuardedModel
 from mintpilot.assembly.talk import Talk, talk_for
+from mintpilot.assembly.validation import check_mission
 from mintpilot.cli.demos import demo_mission
 from mintpilot.core.errors import DeviceError, InputError, UnknownNameError
 from mintpilot.core.mission import Outcome

@@ -31,7 +31,7 @@ from mintpilot.core.query import (
     answer_for,
     choice,
 )
-from mintpilot.elicitation.choose import reply_probabilities
+from mintpilot.elicitation.choose import decisions, reply_probabilities
 from mintpilot.elicitation.objectives import Ec2, InformationGain, Optimal, ValueOfInformation
 from mintpilot.elicitation.partitions import partition_keys
 from mintpilot.elicitation.phrasing_cost import phrasing_cost
@@ -327,3 +327,12 @@ def test_a_choice_is_one_short_question_with_a_consequence_for_each_reply() -> N
         assert len(question.text.split()) <= MAX_WORDS
         assert len(question.option_means) == pick.part_count
         assert (question.yes_means, question.no_means) == ("", "")
+
+
+def test_a_plan_exactly_within_the_tolerance_needs_no_question_despite_rounding() -> None:
+    asking = AskingSettings(delta_c_s=2.0)
+    regret_s = np.array([[0.0, 2.0 + 1e-12], [5.0, 0.0]])
+    merged = decisions(np.array([0, 1]), np.array([0.6, 0.4]), regret_s, asking)
+    assert merged[0] == merged[1]
+    dearer = decisions(np.array([0, 1]), np.array([0.6, 0.4]), regret_s + np.array([[0, 1e-3], [0, 0]]), asking)
+    assert dearer[0] != dearer[1]

@@ -42,7 +42,8 @@ class Liar(Strategy):
         stop = situation.problem.stops[0]
         path = np.vstack([np.asarray([situation.problem.start_m]), self._way])
         leg = Leg(stop=stop, site=stop.sites[0], path_m=path, length_m=1.0, duration_s=1.0)
-        plan = Plan(legs=(leg,), cost_s=1.0, relies_on=frozenset(), enters=frozenset())
+        entered = frozenset(gap.id for gap in situation.problem.gaps) if self._unsafe else frozenset()
+        plan = Plan(legs=(leg,), cost_s=1.0, relies_on=frozenset(), enters=entered)
         return Fly(plan=plan, certificate=CERTIFICATE, unsafe=self._unsafe)
 
 
@@ -69,6 +70,14 @@ def test_a_way_through_an_open_region_is_refused_outside_a_simulator(unsafe: boo
     verdict, path = fly(Liar(THROUGH_CLOUD, unsafe=unsafe))
     assert verdict.outcome is Outcome.NO_SAFE_PLAN
     assert len(path) == 0
+
+
+def test_an_unsafe_baseline_may_enter_an_open_region_in_a_simulator_only() -> None:
+    for simulated in (True, False):
+        verdict, path = fly(Liar(THROUGH_CLOUD, unsafe=True), simulated=simulated)
+        entered = bool(len(path)) and bool((path[:, 0] > 4.9).any())  # the hull is in the cloud there
+        assert entered is simulated
+        assert (verdict.outcome is Outcome.TOXIC_SMOKE) is simulated
 
 
 def test_a_way_through_a_wall_is_refused_even_in_a_simulator() -> None:

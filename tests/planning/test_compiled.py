@@ -16,7 +16,7 @@ def stepped(x: int) -> int:
 
 if __name__ == "__main__":
     print(stepped(5))
-    print(sum(stepped.stats.cache_hits.values()))
+    print(sum(stepped.dispatcher.stats.cache_hits.values()))
 """
 HELPER = """
 from mintpilot.core.compiled import compiled

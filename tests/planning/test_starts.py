@@ -111,3 +111,11 @@ def test_where_cells_are_too_coarse_for_the_body_the_message_says_so() -> None:
     cells = cells.copy()
     cells[0, 8:11, 10] = Cell.FREE
     assert GridPlanner().open(replace(problem, map=room(0.5, 20, cells=cells)))
+
+
+def test_a_flight_that_begins_too_near_keeps_its_clearance_from_half_a_metre_on() -> None:
+    """The border of the grid counts as something: along it, less than the clearance away, no flight leads on."""
+    map = room(0.1, 40)
+    near = [[1.0, 0.2, 0.05], [1.4, 0.2, 0.05]]
+    assert check_path(np.array(near), map, LIMITS) == ""
+    assert check_path(np.array([*near, [1.9, 0.2, 0.05]]), map, LIMITS) != ""

@@ -55,6 +55,8 @@ from mintpilot.mission.step import initial_state, step
 from mintpilot.mission.worker import worked_out
 
 BATTERY_S = 300.0
+VALID_S = 60.0
+"""How long a yes counts here, seconds: some run out while the mission is flown."""
 OUTCOMES: Counter[Outcome] = Counter()
 
 
@@ -62,7 +64,8 @@ OUTCOMES: Counter[Outcome] = Counter()
 def parts():
     world = sample_world()
     limits = replace(world.mission.limits, endurance_s=BATTERY_S)
-    changed = replace(world, mission=replace(world.mission, limits=limits, survey=None))
+    asking = replace(world.mission.asking, answer_valid_s=VALID_S)
+    changed = replace(world, mission=replace(world.mission, limits=limits, survey=None, asking=asking))
     return deliberation_parts(changed, Choices())
 
 
@@ -99,6 +102,8 @@ class Mission(RuleBasedStateMachine):
         self.ended = False
         self.holds = False
         self.clouds = 0
+        self.shown: dict[str, dict[str, np.ndarray]] = {}
+        self.allowed: dict[str, tuple[np.ndarray, float]] = {}
         self.feed(MissionBegun(time_s=0.0, vehicle=self.vehicle()))
 
     def vehicle(self) -> VehicleState:
@@ -113,6 +118,12 @@ class Mission(RuleBasedStateMachine):
     def feed(self, event: Input) -> None:
         """One step: the same twice, and its directives looked at from outside."""
         before = self.state
+        if isinstance(event, Answered) and before.question is not None and self.open == [event.question]:
+            query, part = before.question.question.query, event.answer.part
+            for literal in query.asserted(part) if part is not None else ():
+                region = literal.gap.partition(":")[2]
+                if region in self.shown[event.question]:
+                    self.allowed[region] = (self.shown[event.question][region], max(before.clock_s, event.time_s))
         if isinstance(event, Answered) and event.answer.reply is Reply.YES and self.open == [event.question]:
             self.go = True
         self.state, directives = step(before, event)
@@ -146,6 +157,8 @@ class Mission(RuleBasedStateMachine):
                 if name not in self.open:
                     assert name not in self.asked, "ids are given once"
                     self.open, self.asked = [name], [*self.asked, name]
+                    seen = self.state.beliefs.map.regions if self.state.beliefs is not None else ()
+                    self.shown[name] = {r.id: r.cells for r in seen}
             case WithdrawQuestion():
                 self.open = [name for name in self.open if name != directive.question]
             case Finish():
@@ -161,6 +174,11 @@ class Mission(RuleBasedStateMachine):
             return  # back out of a place that was found doubtful only now, along the way it came
         known = self.state.beliefs.map
         open_ = np.zeros(known.cells.size, bool)
+        for region in self.map.regions:
+            cells, given_s = self.allowed.get(region.id, (np.zeros(0, int), -np.inf))
+            covered = np.isin(region.cells, grown(cells, known.cells.shape)).all()
+            if not covered or self.state.clock_s >= given_s + VALID_S:
+                open_[region.cells] = True
         for region in known.regions:
             if region.passable is not Knowledge.YES:
                 open_[region.cells] = True
@@ -245,6 +263,28 @@ class Mission(RuleBasedStateMachine):
             self.map = replace(self.map, regions=(*self.map.regions, cloud))
             obstruction = data.draw(st.sampled_from(["", "a cloud"]))
             self.feed(MapObserved(time_s=self.time_s, map=self.believed(), obstruction=obstruction))
+
+    @precondition(lambda self: self.state.beliefs is not None and not self.calm)
+    @rule(voxels=st.integers(1, 3))
+    def a_region_grows(self, voxels: int) -> None:
+        """All regions of the map; by more than one voxel, what was allowed is open again."""
+        regions = list(self.map.regions)
+        for i, region in enumerate(regions):
+            cells = region.cells
+            for _ in range(voxels):
+                cells = grown(cells, self.map.cells.shape)
+            regions[i] = replace(region, cells=cells)
+        self.map = replace(self.map, regions=tuple(regions))
+        self.feed(MapObserved(time_s=self.time_s, map=self.believed(), obstruction="a cloud has grown"))
+
+    @precondition(lambda self: bool(self.allowed) and not self.ended)
+    @rule()
+    def an_answer_gets_old(self) -> None:
+        self.time_s += VALID_S
+        self.feed(Ticked(time_s=self.time_s, vehicle=self.vehicle()))
+        assert self.state.beliefs is not None
+        assert not entered(self.state.beliefs.map), "an answer counts for a time only"
+        assert not self.state.beliefs.confirmed
 
     @precondition(lambda self: bool(self.requests))
     @rule(data=st.data())
@@ -356,6 +396,15 @@ class Mission(RuleBasedStateMachine):
                 return
             self.go_well()
         raise AssertionError(f"the mission does not end: {self.state.goal}, {self.state.activity}")
+
+
+def grown(cells: np.ndarray, shape: tuple[int, ...]) -> np.ndarray:
+    """Flat indices of these cells and of all that touch them, be it at a corner."""
+    zyx = np.stack(np.unravel_index(np.asarray(cells, int), shape), axis=1)
+    steps = np.stack(np.meshgrid(*[[-1, 0, 1]] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
+    near = (zyx[:, None] + steps[None]).reshape(-1, 3)
+    inside = ((near >= 0) & (near < shape)).all(axis=1)
+    return np.unique(np.ravel_multi_index(tuple(near[inside].T), shape)) if len(near) else np.zeros(0, int)
 
 
 def entered(map: SemanticMap) -> set[str]:

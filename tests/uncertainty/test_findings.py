@@ -90,6 +90,13 @@ def test_an_open_region_is_an_obstacle_gap() -> None:
     assert second.prior == pytest.approx((0.2, 0.8))
 
 
+def test_an_explicit_prior_of_a_half_is_kept() -> None:
+    findings = find_gaps(
+        world([RED, PERSON], [smoke("smoke-1", 0, prior=0.5)]), MEDICINE, start_m=START_M, prior_passable=0.2
+    )
+    assert findings.gaps[0].prior == pytest.approx((0.5, 0.5))
+
+
 def test_a_region_without_cells_opens_no_gap() -> None:
     empty = smoke("smoke-1", 0)
     hollow = type(empty)(id="smoke-2", kind=RegionKind.SMOKE, cells=np.zeros(0, np.int64))

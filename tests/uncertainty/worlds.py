@@ -27,7 +27,9 @@ def thing(name: str, label: str, at_m: Vec3, edge_m: float = 0.4, **attributes: 
     return MapObject(id=name, label=label, box_m=box, attributes=tuple(pairs))
 
 
-def smoke(name: str, first: int, prior: float = 0.5, passable: Knowledge = Knowledge.OPEN, words: str = "") -> Region:
+def smoke(
+    name: str, first: int, prior: float | None = None, passable: Knowledge = Knowledge.OPEN, words: str = ""
+) -> Region:
     cells = np.arange(first, first + 4, dtype=np.int64)
     return Region(
         id=name, kind=RegionKind.SMOKE, cells=cells, passable=passable, prior_passable=prior, description=words

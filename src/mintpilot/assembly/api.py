@@ -1,31 +1,27 @@
-"""The public Python API: think about a mission, fly it, check its file."""
+"""The public Python API: think about a mission, fly it. What checks its file is in `mintpilot.assembly.validation`."""
 
 from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import TypeAlias, cast
+from typing import TYPE_CHECKING, TypeAlias, cast
 
 from mintpilot.assembly.components import Choices, VehicleChoice, components_for, deliberation_parts, scripted_operator
 from mintpilot.assembly.deliberation_report import DeliberationReport, deliberation_report
 from mintpilot.assembly.strategies import Argument, strategy_label
 from mintpilot.assembly.talk import Talk, talk_for
-from mintpilot.assembly.validation import validation_problems
 from mintpilot.assembly.worlds import World, build_world
 from mintpilot.core.errors import UnknownNameError
 from mintpilot.core.events import Event
 from mintpilot.core.ports import Ask, LanguageModel, Operator, Recorder
-from mintpilot.interaction.scripted import ScriptedOperator
 from mintpilot.mission.explanations import explanations
-from mintpilot.mission.loop import fly_mission
 from mintpilot.mission.preview import preview
-from mintpilot.mission_file.reader import Problem, find_problems, read_mission
+from mintpilot.mission_file.reader import read_mission
 from mintpilot.mission_file.schema import MissionFile
-from mintpilot.recording.in_memory import HistoryRecorder
-from mintpilot.recording.record import MissionRecord
-from mintpilot.recording.recorders import TeeRecorder
-from mintpilot.recording.run_folder import RunFolder
+
+if TYPE_CHECKING:
+    from mintpilot.recording.record import MissionRecord
 
 Progress: TypeAlias = Callable[[Event], object]
 """Called with every event of a mission, as it happens."""
@@ -34,14 +30,6 @@ MakeOperator: TypeAlias = Callable[[Talk], Operator]
 
 AnyOperator: TypeAlias = Operator | MakeOperator | str
 """Somebody who answers, what makes such a one, or ``"scripted"``."""
-
-
-def check_mission(path: str | Path) -> list[Problem]:
-    """Every mistake in that mission file, with its place and what to write instead; empty when it is sound.
-
-    A file of sound form is built as well, so that names, parameters and the instruction are known to be usable.
-    """
-    return find_problems(path) or validation_problems(path, read_mission(path))
 
 
 def plan_mission(
@@ -169,6 +157,11 @@ def _flown(
     out: Path | None,
     progress: Progress | None,
 ) -> MissionRecord:
+    from mintpilot.mission.loop import fly_mission
+    from mintpilot.recording.in_memory import HistoryRecorder
+    from mintpilot.recording.recorders import TeeRecorder
+    from mintpilot.recording.run_folder import RunFolder
+
     keeper = RunFolder(out) if out is not None else None
     recorder = HistoryRecorder()
     recorders: list[Recorder] = [keeper if keeper is not None else recorder]
@@ -219,5 +212,4 @@ def _operator(operator: AnyOperator, world: World, file: MissionFile, talk: Talk
         return cast(Operator, operator) if hasattr(operator, "poll") else operator(talk)
     if operator != "scripted":
         raise UnknownNameError("operator", operator, ["scripted"])
-    scripted: ScriptedOperator = scripted_operator(world, file.operator)
-    return scripted
+    return scripted_operator(world, file.operator)

@@ -6,11 +6,11 @@ from collections.abc import Mapping
 from contextlib import AbstractContextManager, ExitStack
 from dataclasses import dataclass, field
 from enum import StrEnum
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from mintpilot.assembly.briefing import briefing_of
-from mintpilot.assembly.perceiving import Seeing, make_perception, remarks_of
 from mintpilot.assembly.registry import load
 from mintpilot.assembly.strategies import Argument, make_objective, make_strategy, strategy_label
 from mintpilot.assembly.talk import Talk
@@ -21,16 +21,17 @@ from mintpilot.core.ports import Operator, Perception, Recorder
 from mintpilot.core.semantic_map import SemanticMap
 from mintpilot.core.task import Action
 from mintpilot.elicitation.wording import word_question
-from mintpilot.interaction.scripted import ScriptedOperator
-from mintpilot.mapping.builder import MapBuilder
 from mintpilot.mission.components import MissionComponents
 from mintpilot.mission.deliberation import DeliberationParts
 from mintpilot.mission.map_source import CameraMapSource, GivenMap, MapSource
 from mintpilot.mission_file.schema import OperatorSpec
-from mintpilot.simulation.kinematic import KinematicSimulator
-from mintpilot.simulation.mujoco_vehicle import MujocoSimulator
-from mintpilot.simulation.scene_map_source import SceneMapSource
 from mintpilot.uncertainty.keep_away import with_keep_away
+
+if TYPE_CHECKING:
+    from mintpilot.interaction.scripted import ScriptedOperator
+    from mintpilot.mapping.builder import MapBuilder
+    from mintpilot.simulation.kinematic import KinematicSimulator
+    from mintpilot.simulation.mujoco_vehicle import MujocoSimulator
 
 TAKE_OFF_CLEAR_M = 1.0
 """Free space around the hover point that whoever puts the drone down vouches for, metres."""
@@ -85,6 +86,8 @@ def deliberation_parts(world: World, choices: Choices, talk: Talk | None = None)
 
 def scripted_operator(world: World, spec: OperatorSpec) -> ScriptedOperator:
     """An operator that knows the truth of the world."""
+    from mintpilot.interaction.scripted import ScriptedOperator
+
     return ScriptedOperator(
         world.truth,
         rng=np.random.default_rng([world.seed, 7]),
@@ -136,12 +139,19 @@ class _Components(AbstractContextManager[MissionComponents]):
         self._stack = ExitStack()
 
     def __enter__(self) -> MissionComponents:
+        from mintpilot.planning.warm import warm_up
+
+        warm_up()
         world, choices = self._world, self._choices
         self._stack.callback(self._talk.close)
         if choices.vehicle is VehicleChoice.MUJOCO and not world.is_map:
+            from mintpilot.simulation.mujoco_vehicle import MujocoSimulator
+
             simulator = MujocoSimulator(world.scene, world.rules, seed=world.seed, camera_size=choices.camera_size)
             self._stack.callback(simulator.close)
             wanted = tuple(dict.fromkeys(g.reference.label for g in world.task.subgoals if g.reference.label))
+            from mintpilot.assembly.perceiving import Seeing, make_perception
+
             perception = make_perception(Seeing(perception=choices.perception, namers=choices.namers, wanted=wanted))
             self._perception = perception
             builder = map_builder(world)
@@ -158,6 +168,9 @@ class _Components(AbstractContextManager[MissionComponents]):
                 f"'photograph {photographs[0].reference.phrase}' cannot be done: this vehicle has no camera. "
                 "Fly with one that has, or leave the picture out."
             )
+        from mintpilot.simulation.kinematic import KinematicSimulator
+        from mintpilot.simulation.scene_map_source import SceneMapSource
+
         kinematic = KinematicSimulator(world.scene, world.rules, seed=world.seed)
         given: MapSource = GivenMap(world.map)
         if not world.is_map:
@@ -169,6 +182,8 @@ class _Components(AbstractContextManager[MissionComponents]):
         self._stack.close()
 
     def _remarks(self) -> tuple[str, ...]:
+        from mintpilot.assembly.perceiving import remarks_of
+
         seen = () if self._perception is None else tuple(remarks_of(self._perception))
         return (*self._talk.take_remarks(), *seen)
 
@@ -230,6 +245,8 @@ class KeepAwayMapSource(MapSource):
 
 def map_builder(world: World) -> MapBuilder:
     """A builder on the lattice of the world's map."""
+    from mintpilot.mapping.builder import MapBuilder
+
     mission = world.mission
     frame: GridFrame = world.map.frame
     return MapBuilder(

@@ -8,11 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from importlib import import_module
-from importlib.metadata import EntryPoint, entry_points
 from types import MappingProxyType
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 from mintpilot.core.errors import InputError, UnknownNameError
+
+if TYPE_CHECKING:
+    from importlib.metadata import EntryPoint
 
 BUILT_IN: Final = MappingProxyType(
     {
@@ -66,7 +68,7 @@ BUILT_IN: Final = MappingProxyType(
                 "picture": "mintpilot.frames.single:SinglePicture",
                 "bag": "mintpilot.frames.bags:RosBag",
                 "realsense": "mintpilot.frames.realsense:RealSense",
-                "sim": "mintpilot.simulation.frame_source:SimulatedPictures",
+                "sim": "mintpilot.simulation.picture_server:simulated",
             }
         ),
         "language": MappingProxyType(
@@ -124,6 +126,17 @@ def load(port: str, name: str) -> type:
     raise unknown(port, name, names(port))
 
 
+def check_name(port: str, name: str) -> None:
+    """Whether a part of that name can be had. Our own are known to be there; a plug-in is loaded to find out.
+
+    Raises:
+        UnknownNameError: nobody registered it; the nearest known name is given.
+        InputError: a plug-in is registered but cannot be imported.
+    """
+    if name not in BUILT_IN[port]:
+        load(port, name)
+
+
 def present_name(strategy: str) -> str:
     """What a strategy that is named in an older record is called now."""
     return FORMER["strategy"].get(strategy, strategy)
@@ -137,6 +150,8 @@ def unknown(port: str, name: str, known: Iterable[str]) -> UnknownNameError:
 
 
 def _plug_ins(port: str) -> tuple[EntryPoint, ...]:
+    from importlib.metadata import entry_points
+
     return tuple(entry_points(group=f"mintpilot.{port}"))
 
 

@@ -15,11 +15,6 @@ from mintpilot.core.reading import AnsweredBy, Reading, guarded_replies
 from mintpilot.core.task import Task
 from mintpilot.core.tree import Mint
 from mintpilot.elicitation.wording import word_question
-from mintpilot.language.answer_model import READING_S, read_with_model
-from mintpilot.language.answers import order_in, read_answer
-from mintpilot.language.instruction import parse_instruction
-from mintpilot.language.instruction_model import parse_with_model
-from mintpilot.language.proposing import propose_cuts
 from mintpilot.language.translating import ENGLISH, wording_for
 from mintpilot.language.wording import ModelWording, Wording
 from mintpilot.mission.rewording import Improve
@@ -78,7 +73,11 @@ class Talk(AbstractContextManager["Talk"]):
             InputError: neither way gives a task; the rules' own reason.
         """
         if self._model is None:
+            from mintpilot.language.instruction import parse_instruction
+
             return parse_instruction(text, home_m=home_m, known=known)
+        from mintpilot.language.instruction_model import parse_with_model
+
         return parse_with_model(text, self._model, home_m=home_m, known=known)
 
     def understand(
@@ -97,7 +96,11 @@ class Talk(AbstractContextManager["Talk"]):
         """
         kept = guarded_replies(question) if guarded is None else guarded
         if self._model is None or self.lang != ENGLISH:
+            from mintpilot.language.answers import read_answer
+
             return read_answer(text, question, guarded=kept, lang=self.lang, by=by, pending=pending)
+        from mintpilot.language.answer_model import READING_S, read_with_model
+
         return read_with_model(
             text,
             question,
@@ -110,6 +113,8 @@ class Talk(AbstractContextManager["Talk"]):
 
     def order_of(self, text: str) -> Order | None:
         """The order that typed words are where nothing is asked; None: they are none."""
+        from mintpilot.language.answers import order_in
+
         return order_in(text, self.lang)
 
     def take_remarks(self) -> tuple[str, ...]:
@@ -137,6 +142,8 @@ class ModelProposer(Proposer):
 
     def propose(self, mint: Mint) -> tuple[Query, ...]:
         """See `Proposer.propose`."""
+        from mintpilot.language.proposing import propose_cuts
+
         return propose_cuts(self.model, mint).queries
 
 

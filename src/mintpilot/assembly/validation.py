@@ -6,19 +6,24 @@ from collections.abc import Callable, Iterator
 from functools import partial
 from pathlib import Path
 
-from mintpilot.assembly.registry import load
-from mintpilot.assembly.strategies import make_strategy
+from mintpilot.assembly.registry import check_name
 from mintpilot.assembly.worlds import build_world, listed_words, scenario_of
 from mintpilot.core.errors import MintPilotError
-from mintpilot.language.instruction import parse_instruction
-from mintpilot.language.phrases import parse_phrase
-from mintpilot.mission_file.reader import Place, Problem, place_problems
+from mintpilot.mission_file.reader import Place, Problem, find_problems, place_problems, read_mission
 from mintpilot.mission_file.schema import MissionFile
 from mintpilot.mission_file.schema_world import MapWorld, ScenarioWorld
 from mintpilot.uncertainty.findings import find_gaps
 
 _ANYWHERE = (0.0, 0.0, 0.0)
 """Stands for the start until the world is built."""
+
+
+def check_mission(path: str | Path) -> list[Problem]:
+    """Every mistake in that mission file, with its place and what to write instead; empty when it is sound.
+
+    A file of sound form is built as well, so that names, parameters and the instruction are known to be usable.
+    """
+    return find_problems(path) or validation_problems(path, read_mission(path))
 
 
 def validation_problems(path: str | Path, file: MissionFile) -> list[Problem]:
@@ -33,26 +38,19 @@ def validation_problems(path: str | Path, file: MissionFile) -> list[Problem]:
 
 def _mistakes(file: MissionFile, base: Path) -> Iterator[tuple[Place, str]]:
     found = [
-        *_tried(("asking", "objective"), lambda: load("objective", file.asking.objective)),
-        *_tried(("asking", "impact_metric"), lambda: load("metric", file.asking.impact_metric)),
+        *_tried(("asking", "objective"), lambda: check_name("objective", file.asking.objective)),
+        *_tried(("asking", "impact_metric"), lambda: check_name("metric", file.asking.impact_metric)),
         *_strategy_mistakes(file),
-        *_tried(("perception", "use"), lambda: load("perception", file.perception.use)),
+        *_tried(("perception", "use"), lambda: check_name("perception", file.perception.use)),
         *(
             fault
             for number, namer in enumerate(file.perception.namers)
-            for fault in _tried(("perception", "namers", number), partial(load, "namer", namer))
+            for fault in _tried(("perception", "namers", number), partial(check_name, "namer", namer))
         ),
-        *_tried(("language", "model"), lambda: load("language", file.language.model)),
+        *_tried(("language", "model"), lambda: check_name("language", file.language.model)),
     ]
-    if file.goals is None:
-        found += _tried(
-            ("instruction",),
-            lambda: parse_instruction(file.instruction, home_m=_ANYWHERE, known=listed_words(file.world)),
-        )
-    regions = {r.id for r in file.world.regions} if isinstance(file.world, MapWorld) else set()
-    for index, wish in enumerate(file.keep_away):
-        if wish.thing not in regions:
-            found += _tried(("keep_away", index, "from"), partial(parse_phrase, wish.thing, listed_words(file.world)))
+    if file.goals is None or file.keep_away:
+        found += _wording_mistakes(file)
     if isinstance(file.world, ScenarioWorld):
         found += _scenario_mistakes(file.world)
     yield from found
@@ -60,8 +58,27 @@ def _mistakes(file: MissionFile, base: Path) -> Iterator[tuple[Place, str]]:
         yield from _world_mistakes(file, base)
 
 
+def _wording_mistakes(file: MissionFile) -> list[tuple[Place, str]]:
+    """An instruction, or a thing to keep away from, in words that are not understood."""
+    from mintpilot.language.instruction import parse_instruction
+    from mintpilot.language.phrases import parse_phrase
+
+    found, known = [], listed_words(file.world)
+    if file.goals is None:
+        found += _tried(("instruction",), lambda: parse_instruction(file.instruction, home_m=_ANYWHERE, known=known))
+    regions = {r.id for r in file.world.regions} if isinstance(file.world, MapWorld) else set()
+    for index, wish in enumerate(file.keep_away):
+        if wish.thing not in regions:
+            found += _tried(("keep_away", index, "from"), partial(parse_phrase, wish.thing, known))
+    return found
+
+
 def _strategy_mistakes(file: MissionFile) -> list[tuple[Place, str]]:
     """Arguments that a strategy does not take, or strategies that nobody registered."""
+    if not file.asking.strategy_arguments:
+        return []
+    from mintpilot.assembly.strategies import make_strategy
+
     return [
         mistake
         for name, arguments in file.asking.strategy_arguments.items()

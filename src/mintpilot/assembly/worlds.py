@@ -3,22 +3,19 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
-from mintpilot.assembly.declared import DeclaredTruth, wanted_of
 from mintpilot.core.errors import InputError, MissionError
 from mintpilot.core.gap import CorrelationGroup
 from mintpilot.core.geometry import Vec3
 from mintpilot.core.mission import Mission
 from mintpilot.core.plan import VehicleLimits
-from mintpilot.core.ports import TruthOracle
 from mintpilot.core.semantic_map import SemanticMap
 from mintpilot.core.task import SLOW, KeepAway, Reference, Task
-from mintpilot.language.instruction import parse_instruction
-from mintpilot.language.phrases import parse_phrase
 from mintpilot.mapping.listed_objects import with_solid_objects
 from mintpilot.mission_file.schema import MissionFile
 from mintpilot.mission_file.schema_base import attributes_of, place_of
@@ -27,13 +24,13 @@ from mintpilot.mission_file.schema_map import load_bare_map, map_of
 from mintpilot.mission_file.schema_scene import ClosedRoomSpec, PersonSpec, SceneSpec
 from mintpilot.mission_file.schema_world import MapWorld, ScenarioWorld, SceneWorld, SeenWorld
 from mintpilot.mission_file.seen_map import load_map
-from mintpilot.simulation.map_scene import scene_of_map
-from mintpilot.simulation.scenarios import Scenario, make_scenario
 from mintpilot.simulation.scene import ClosedRoom, FlightRules, Person, Scene, Shape, Smoke, Solid
-from mintpilot.simulation.scene_map import map_of_scene
-from mintpilot.simulation.truth import SceneTruth
 from mintpilot.uncertainty.findings import find_gaps
 from mintpilot.uncertainty.keep_away import with_keep_away
+
+if TYPE_CHECKING:
+    from mintpilot.core.ports import TruthOracle
+    from mintpilot.simulation.scenarios import Scenario
 
 RESERVE = 0.2
 """Share of a battery that plans leave."""
@@ -47,17 +44,27 @@ class World:
 
     mission: Mission
     task: Task
-    scene: Scene
-    """The truth to fly in."""
+    make_scene: Callable[[], Scene]
+    """Makes the truth to fly in; thinking needs none. It can be pickled, for workers."""
     rules: FlightRules
-    truth: TruthOracle
-    """For scripted operators only."""
+    make_truth: Callable[[], TruthOracle]
+    """Makes what knows the answers: for scripted operators and judges only."""
     map: SemanticMap
     """What a perfect survey would show, or the map that was given."""
     is_map: bool
     """True when the map was given: there is nothing to render or survey."""
     seed: int
     groups: tuple[CorrelationGroup, ...] = ()
+
+    @property
+    def truth(self) -> TruthOracle:
+        """What knows the answers; made anew each time."""
+        return self.make_truth()
+
+    @property
+    def scene(self) -> Scene:
+        """The truth to fly in; made when it is asked for."""
+        return self.make_scene()
 
 
 class Parse(Protocol):
@@ -71,18 +78,19 @@ class Parse(Protocol):
         ...
 
 
-def build_world(file: MissionFile, *, base: Path, seed: int | None, parse: Parse = parse_instruction) -> World:
+def build_world(file: MissionFile, *, base: Path, seed: int | None, parse: Parse | None = None) -> World:
     """The world of a mission file.
 
     Args:
         file: the checked mission.
         base: folder that file names in it are relative to.
         seed: overrides the seed in the file.
-        parse: reads the instruction where the file gives no goals.
+        parse: reads the instruction where the file gives no goals; None: rules do.
 
     Raises:
         InputError: the instruction is not understood, or a map or scenario cannot be used.
     """
+    parse = parse or _by_rules
     world = file.world
     drawn = seed if seed is not None else (world.seed or 0)
     if isinstance(world, ScenarioWorld):
@@ -125,15 +133,23 @@ def _from_scene(file: MissionFile, scene: Scene, seed: int, parse: Parse) -> Wor
     return _assembled(file, replace(mission, limits=_with_reserve(mission.limits)), scene, rules, seed, parse)
 
 
+def _by_rules(text: str, /, *, home_m: Vec3 | None, known: Collection[str] = ()) -> Task:
+    from mintpilot.language.instruction import parse_instruction
+
+    return parse_instruction(text, home_m=home_m, known=known)
+
+
 def _assembled(file: MissionFile, mission: Mission, scene: Scene, rules: FlightRules, seed: int, parse: Parse) -> World:
+    from mintpilot.simulation.scene_map import map_of_scene
+
     task = _with_wishes(task_of(file) or parse(mission.instruction, home_m=mission.start_m), file)
     seen = map_of_scene(scene, mission.resolution_m)
     return World(
         mission=replace(mission, limits=_at_pace(mission.limits, task)),
         task=task,
-        scene=scene,
+        make_scene=partial(_as_it_is, scene),
         rules=rules,
-        truth=SceneTruth(scene),
+        make_truth=partial(_truth_of_scene, scene),
         map=with_keep_away(seen, task, start_m=mission.start_m),
         is_map=False,
         seed=seed,
@@ -175,26 +191,48 @@ def _on_map(file: MissionFile, map_: SemanticMap, task: Task, start: Vec3, seed:
     problems = find_gaps(map_, task, start_m=start).problems if task.needs_confirmation else ()
     if problems:
         raise InputError(f"'{mission.instruction}' was read by a language model: {' '.join(problems)}")
+    return World(
+        mission=replace(mission, limits=_with_reserve(_at_pace(mission.limits, task)), volume=map_.frame.box),
+        task=task,
+        make_scene=partial(_scene_on_map, map_, file.name, task, truths, start),
+        rules=replace(_hull(mission.limits, flat=map_.frame.is_flat), endurance_s=mission.limits.endurance_s),
+        make_truth=partial(_declared_truth, truths),
+        map=with_keep_away(with_solid_objects(map_, mission.limits.clearance_m), task, start_m=start),
+        is_map=True,
+        seed=seed,
+        groups=correlations_of(file),
+    )
+
+
+def _as_it_is(scene: Scene) -> Scene:
+    return scene
+
+
+def _truth_of_scene(scene: Scene) -> TruthOracle:
+    from mintpilot.simulation.truth import SceneTruth
+
+    return SceneTruth(scene)
+
+
+def _declared_truth(truths: Mapping[str, str]) -> TruthOracle:
+    from mintpilot.assembly.declared import DeclaredTruth
+
+    return DeclaredTruth(truths)
+
+
+def _scene_on_map(map_: SemanticMap, name: str, task: Task, truths: Mapping[str, str], start: Vec3) -> Scene:
+    from mintpilot.assembly.declared import wanted_of
+    from mintpilot.simulation.map_scene import scene_of_map
+
     wanted = wanted_of(map_, task, truths, start)
-    scene = scene_of_map(
+    return scene_of_map(
         map_,
-        name=file.name,
+        name=name,
         start_m=start,
         truths=truths,
         goal_objects=wanted.objects,
         places_m=wanted.places,
         must_be_found=wanted.people,
-    )
-    return World(
-        mission=replace(mission, limits=_with_reserve(_at_pace(mission.limits, task)), volume=map_.frame.box),
-        task=task,
-        scene=scene,
-        rules=replace(_hull(mission.limits, flat=map_.frame.is_flat), endurance_s=mission.limits.endurance_s),
-        truth=DeclaredTruth(truths),
-        map=with_keep_away(with_solid_objects(map_, mission.limits.clearance_m), task, start_m=start),
-        is_map=True,
-        seed=seed,
-        groups=correlations_of(file),
     )
 
 
@@ -220,6 +258,10 @@ def listed_words(world: MapWorld | ScenarioWorld | SceneWorld | SeenWorld) -> fr
 
 def _with_wishes(task: Task, file: MissionFile) -> Task:
     """The task with the distances that the file wants kept, besides those of the instruction."""
+    if not file.keep_away:
+        return task
+    from mintpilot.language.phrases import parse_phrase
+
     regions = {r.id for r in file.world.regions} if isinstance(file.world, MapWorld) else set()
     wishes = tuple(
         KeepAway(
@@ -230,7 +272,7 @@ def _with_wishes(task: Task, file: MissionFile) -> Task:
         )
         for spec in file.keep_away
     )
-    return replace(task, keep_away=(*task.keep_away, *wishes)) if wishes else task
+    return replace(task, keep_away=(*task.keep_away, *wishes))
 
 
 def _at_pace(limits: VehicleLimits, task: Task) -> VehicleLimits:
@@ -250,6 +292,8 @@ def scenario_of(world: ScenarioWorld, seed: int) -> Scenario:
         UnknownNameError: the generator has no parameter of a name.
         MissionError: a parameter's value breaks a rule.
     """
+    from mintpilot.simulation.scenarios import make_scenario
+
     return make_scenario(world.scenario, seed, **_numbers(world.parameters))
 
 

@@ -12,7 +12,7 @@ from mintpilot.cli.exits import ExitCode
 
 def check_file(path: Path, *, as_json: bool) -> ExitCode:
     """Prints every mistake in that mission file, or that there is none."""
-    from mintpilot.assembly.api import check_mission
+    from mintpilot.assembly.validation import check_mission
 
     problems = check_mission(path)
     if as_json:

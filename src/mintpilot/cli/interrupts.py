@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import signal
 from types import FrameType
+from typing import TYPE_CHECKING
 
-from mintpilot.core.events import Event, MissionEnded
+if TYPE_CHECKING:
+    from mintpilot.core.events import Event
 
 _wanted = False
 
@@ -24,6 +26,8 @@ def stop_if_wanted(event: Event) -> None:
 
     An exception that is raised while a library's clean-up or call-back runs is printed and dropped by Python.
     """
+    from mintpilot.core.events import MissionEnded
+
     global _wanted
     if _wanted and not isinstance(event, MissionEnded):
         _wanted = False

@@ -4,17 +4,18 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Sequence
-from importlib.metadata import version
 from pathlib import Path
 from typing import Annotated, Literal, TypeAlias
 
 from cyclopts import App, CycloptsError, Parameter, validators
-from rich.console import Console
 
+from mintpilot import __version__
 from mintpilot.cli.bench import bench
 from mintpilot.cli.exits import EPILOGUE, ExitCode, fail, guarded
 from mintpilot.cli.exporting import export
 from mintpilot.cli.interrupts import listen
+from mintpilot.cli.logs import log, runs
+from mintpilot.cli.simulating import sim
 from mintpilot.cli.understand_answer import answer
 from mintpilot.cli.understand_instruction import instruction
 
@@ -23,7 +24,7 @@ app = App(
     help="Lets a drone ask instead of guess: it finds what it does not know, asks the fewest yes/no questions that "
     "matter, and flies safely.",
     help_epilogue=EPILOGUE,
-    version=version("mintpilot"),
+    version=__version__,
     help_format="plaintext",
     result_action="return_value",
 )
@@ -356,6 +357,9 @@ def replay(
 
 
 app.command(bench)
+app.command(sim)
+app.command(log)
+app.command(runs, help_epilogue=examples("mintpilot runs", "mintpilot runs --prune --keep 20 --yes"))
 app.command(
     export,
     help_epilogue=examples(
@@ -391,7 +395,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     words = list(sys.argv[1:] if arguments is None else arguments)
     listen()
     try:
-        code = app(words, exit_on_error=False, print_error=False, error_console=Console(stderr=True))
+        code = app(words, exit_on_error=False, print_error=False)
     except CycloptsError as error:
         return fail(f"{error}; see mintpilot --help", as_json="--json" in words)
     except KeyboardInterrupt:

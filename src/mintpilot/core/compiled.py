@@ -3,6 +3,9 @@
 numba keeps a compiled function as long as the file that defines it stays the same. What that function calls, and the
 constants that it reads, are compiled into it, and may stand in other files: after an update of the package it would run
 on with what those files said before. Rooms of one layer never import each other, so a room's folder holds all of it.
+
+numba itself is imported with the first call of a compiled function, not with the module that defines it: reading and
+checking a mission file compiles nothing, and should not wait for a compiler.
 """
 
 from __future__ import annotations
@@ -12,8 +15,6 @@ import hashlib
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, Literal, TypeVar, cast
-
-from numba import njit
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -30,12 +31,49 @@ def compiled(
     """
 
     def decorate(function: F) -> F:
-        made: Any = njit(cache=True, error_model=error_model, fastmath=fastmath, nogil=nogil)(function)
-        if hasattr(made, "_cache"):  # there is none where compiling is switched off
-            made._cache._cache_file._source_stamp = stamp(Path(function.__code__.co_filename).parent)
-        return cast(F, made)
+        return cast(F, Compiled(function, error_model=error_model, fastmath=fastmath, nogil=nogil))
 
     return decorate
+
+
+class Compiled:
+    """A function that numba compiles; called like the function, from Python and from other compiled functions.
+
+    Args:
+        function: what is compiled.
+        options: those of ``numba.njit``.
+    """
+
+    def __init__(self, function: Callable[..., Any], **options: Any) -> None:
+        functools.update_wrapper(self, function)
+        self._options = options
+
+    def __call__(self, *arguments: Any) -> Any:
+        """The function's value."""
+        return self.dispatcher(*arguments)
+
+    @functools.cached_property
+    def dispatcher(self) -> Any:
+        """What numba makes of the function; it holds the compiled code of every signature."""
+        from numba import njit
+
+        _teach_numba()
+        function: Any = self.__wrapped__  # type: ignore[attr-defined]  # set by `functools.update_wrapper`
+        made: Any = njit(cache=True, **self._options)(function)
+        if hasattr(made, "_cache"):  # there is none where compiling is switched off
+            made._cache._cache_file._source_stamp = stamp(Path(function.__code__.co_filename).parent)
+        return made
+
+
+@functools.cache
+def _teach_numba() -> None:
+    """Compiled functions call each other: numba takes a `Compiled` for the dispatcher that it holds."""
+    from numba.core.types import Dispatcher
+    from numba.extending import typeof_impl
+
+    @typeof_impl.register(Compiled)
+    def type_of(value: Compiled, _context: object) -> object:
+        return Dispatcher(value.dispatcher)
 
 
 @functools.cache

@@ -93,6 +93,9 @@ class AskingSettings:
     )
     max_questions: int = setting(20, "Budget of questions.", least=0)
     patience_s: float = setting(30.0, "How long an answer is waited for, seconds.", least=0)
+    answer_valid_s: float = setting(
+        600.0, "How long a yes for a region counts, seconds; then it is asked again.", least=0
+    )
     objective: str = setting("information-gain", "Name of the query objective.")
     max_nodes: int = setting(4096, "Bound on the tree's nodes.", least=1)
     max_joint: int = setting(65536, "Bound on the joint hypotheses held.", least=1)

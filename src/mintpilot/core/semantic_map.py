@@ -74,8 +74,8 @@ class Region:
     """Flat indices (n,) into the grid, sorted, without repetition."""
     passable: Knowledge = Knowledge.OPEN
     """``YES`` only after it was seen free or an explicit answer said so (method, section 6)."""
-    prior_passable: float = 0.5
-    """Probability that it is passable, before any answer."""
+    prior_passable: float | None = None
+    """Probability that it is passable, before any answer; None: that of the mission."""
     description: str = ""
     """What the operator can see of it, e.g. ``the grey smoke near the red rack``."""
     best_view: tuple[int, int, int, int, int] | None = None
@@ -83,7 +83,7 @@ class Region:
 
     def __post_init__(self) -> None:
         frozen(self.cells)
-        if not 0 <= self.prior_passable <= 1:
+        if self.prior_passable is not None and not 0 <= self.prior_passable <= 1:
             raise MapError(f"region '{self.id}': prior {self.prior_passable} is not a probability from 0 to 1")
 
 

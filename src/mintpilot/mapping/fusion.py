@@ -82,7 +82,7 @@ def fused_regions(clouds: Sequence[Cloud], given: FusionInput, prior_passable: f
                 id=mine.id if mine else given.names.new("smoke"),
                 kind=RegionKind.SMOKE,
                 cells=cells,
-                passable=_joint(answers),
+                passable=joint_knowledge(answers),
                 prior_passable=mine.prior_passable if mine else prior_passable,
                 description=descriptions[i],
                 best_view=cloud.best_view or (mine.best_view if mine else None),
@@ -126,7 +126,8 @@ def fused_rooms(tracks: Sequence[Track], given: FusionInput, prior_occupied: flo
     return tuple(sorted(result, key=lambda r: _order(r.id)))
 
 
-def _joint(answers: set[Knowledge]) -> Knowledge:
+def joint_knowledge(answers: set[Knowledge]) -> Knowledge:
+    """What is known of a cloud that overlaps regions with these answers: one that is open never opens with the rest."""
     if Knowledge.NO in answers:
         return Knowledge.NO
     return Knowledge.YES if answers == {Knowledge.YES} else Knowledge.OPEN

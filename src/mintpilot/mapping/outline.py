@@ -5,15 +5,14 @@ A cell belongs to an outline as soon as a part of it does: a region that may be 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import ndimage
 
-from mintpilot.core.compiled import compiled
 from mintpilot.core.errors import MapError
 from mintpilot.core.geometry import Box, Floats, GridFrame, Ints
 from mintpilot.core.observation import RegionKind
@@ -108,6 +107,8 @@ def regions_from_mask(
         MapError: the map is not flat, the mask does not fit it, or cannot be read.
         LimitError: the mask has too many pixels.
     """
+    from scipy import ndimage
+
     marked = _mask_on_map(semantic_map.frame, Path(mask_path))
     marked &= semantic_map.cells[0] != Cell.OCCUPIED
     labels, count = ndimage.label(marked, np.ones((3, 3)))
@@ -180,7 +181,6 @@ def _flat(frame: GridFrame, lo: Ints, mask: NDArray[np.bool_]) -> Ints:
     return indices
 
 
-@compiled(error_model="numpy")
 def _polygon_mask(corners: Floats, ny: int, nx: int) -> NDArray[np.bool_]:
     """Which cells (ny, nx) overlap the polygon, corners in cells: those with the centre inside or an edge through.
 
@@ -189,14 +189,13 @@ def _polygon_mask(corners: Floats, ny: int, nx: int) -> NDArray[np.bool_]:
     """
     changes = np.zeros((ny, nx), np.bool_)
     touched = np.zeros((ny, nx), np.bool_)
-    for edge in range(len(corners)):
-        ax, ay = corners[edge - 1]
-        bx, by = corners[edge]
+    around = corners.tolist()
+    for (ax, ay), (bx, by) in zip([around[-1], *around[:-1]], around, strict=True):
         low, high = min(ay, by), max(ay, by)
-        for row in range(max(0, int(np.floor(low))), min(ny, int(np.floor(high)) + 1)):
+        for row in range(max(0, math.floor(low)), min(ny, math.floor(high) + 1)):
             middle = row + 0.5
             if (ay > middle) != (by > middle):
-                last = int(np.ceil(ax + (middle - ay) / (by - ay) * (bx - ax) - 0.5)) - 1
+                last = math.ceil(ax + (middle - ay) / (by - ay) * (bx - ax) - 0.5) - 1
                 if last >= 0:
                     changes[row, min(last, nx - 1)] ^= True
             bottom, top = max(low, row + _SLACK), min(high, row + 1 - _SLACK)
@@ -207,12 +206,7 @@ def _polygon_mask(corners: Floats, ny: int, nx: int) -> NDArray[np.bool_]:
             else:
                 x0, x1 = ax + (bottom - ay) / (by - ay) * (bx - ax), ax + (top - ay) / (by - ay) * (bx - ax)
                 x0, x1 = min(x0, x1), max(x0, x1)
-            for column in range(max(0, int(np.floor(x0)) - 1), min(nx, int(np.floor(x1)) + 1)):
-                if column + 1 - _SLACK > x0 and column + _SLACK < x1:
-                    touched[row, column] = True
-    for row in range(ny):
-        inside = False
-        for column in range(nx - 1, -1, -1):
-            inside ^= changes[row, column]
-            touched[row, column] |= inside
-    return touched
+            first, last = math.floor(x0 - 1 + _SLACK) + 1, math.ceil(x1 - _SLACK) - 1
+            touched[row, max(first, 0) : max(last + 1, 0)] = True
+    inside: NDArray[np.bool_] = np.logical_xor.accumulate(changes[:, ::-1], axis=1)[:, ::-1]
+    return touched | inside

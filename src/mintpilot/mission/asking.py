@@ -7,9 +7,10 @@ from dataclasses import replace
 from mintpilot.core.decisions import AskQuestion, Reasoning
 from mintpilot.core.inputs import Answered, MoreTimeWanted, QuestionReworded, QuestionShown
 from mintpilot.core.query import Answer, Query, Reply, Standing
-from mintpilot.mission.belief_state import BeliefState, update
+from mintpilot.mission.belief_state import BeliefState, confirmed_by, update
 from mintpilot.mission.deliberation import settle
 from mintpilot.mission.directives import ShowQuestion
+from mintpilot.mission.grants import granted, reopened
 from mintpilot.mission.permissions import enlarges, permissions, revoke
 from mintpilot.mission.state import Activity, Goal, OpenQuestion
 from mintpilot.mission.transition import Transition
@@ -43,6 +44,7 @@ def put(t: Transition, decision: AskQuestion) -> None:
             question=question,
             scored=decision.scored,
             asked_s=t.state.clock_s,
+            shown_map=t.beliefs.map,
             deadline_s=t.state.clock_s + patience_s,
         ),
         asked_gaps=t.state.asked_gaps | set(question.query.gap_ids),
@@ -83,14 +85,14 @@ def answered(t: Transition, event: Answered) -> None:
         answer = replace(pending, standing=Standing.CONFIRMED, latency_s=answer.latency_s)
     elif _must_be_read_back(t, open_.question.query, answer):
         if open_.read_backs >= MAX_READ_BACKS:
-            _learn(t, open_.question.query, open_.question.text, replace(answer, reply=Reply.UNSURE, option=None))
+            _learn(t, open_, replace(answer, reply=Reply.UNSURE, option=None))
             t.withdraw("no answer was confirmed")
             return
         read_back = replace(open_.question, read_back=replace(answer, standing=Standing.UNCONFIRMED))
         t.set(question=replace(open_, question=read_back, read_backs=open_.read_backs + 1))
         t.give(ShowQuestion(question=read_back, patience_s=max(0.0, open_.deadline_s - t.state.clock_s)))
         return
-    _learn(t, open_.question.query, open_.question.text, answer)
+    _learn(t, open_, answer)
     t.withdraw("it was answered")
 
 
@@ -111,7 +113,7 @@ def unanswered(t: Transition) -> None:
     """The deadline has passed: the way that is safe whatever holds."""
     open_ = t.state.question
     assert open_ is not None
-    _learn(t, open_.question.query, open_.question.text, Answer(reply=Reply.TIMEOUT, latency_s=_waited_s(t, open_)))
+    _learn(t, open_, Answer(reply=Reply.TIMEOUT, latency_s=_waited_s(t, open_)))
     t.withdraw("no answer came in time")
     t.note("silence", "No answer came: the drone takes the way that is safe whatever holds.")
 
@@ -133,14 +135,36 @@ def _must_be_read_back(t: Transition, query: Query, answer: Answer) -> bool:
     return enlarges(t.beliefs, update(t.beliefs, query, answer, settings).state, settings)
 
 
+def check_permissions(t: Transition) -> None:
+    """Reopens what was permitted too long ago, or for something smaller; a flight that counts on it is broken off."""
+    before, settings = t.beliefs, t.state.setup.mission.asking
+    after = reopened(before, settings, t.state.clock_s, known=t.state.known_passable)
+    if after is before:
+        return
+    t.set(beliefs=after, fallback=None)
+    lost = permissions(before, settings).enter - permissions(after, settings).enter
+    if lost:
+        t.note("permission", "What was permitted is too long ago, or has changed since: it is asked about again.")
+        if t.state.goal is Goal.TASK:
+            t.withdraw("what was permitted has changed")
+            t.set(request=None)
+        t.brake()
+
+
 def _waited_s(t: Transition, open_: OpenQuestion) -> float:
     begun_s = open_.asked_s if open_.shown_s is None else open_.shown_s
     return max(0.0, t.state.clock_s - begun_s)
 
 
-def _learn(t: Transition, query: Query, text: str, answer: Answer) -> None:
-    result = update(t.beliefs, query, answer, t.state.setup.mission.asking)
-    t.set(beliefs=result.state, learnt=answer)
+def _learn(t: Transition, open_: OpenQuestion, answer: Answer) -> None:
+    query, text, before = open_.question.query, open_.question.text, t.beliefs
+    result = update(before, query, answer, t.state.setup.mission.asking)
+    after = result.state
+    if answer.part is not None and open_.shown_map is not None and not result.contradiction:
+        yes = confirmed_by(query, answer.part, before.belief.gaps)
+        after = granted(after, yes, open_.shown_map, t.state.clock_s)
+    t.set(beliefs=after, learnt=answer)
+    check_permissions(t)
     if result.contradiction:
         t.note("contradiction", f"The answer to '{text}' goes against an earlier one; it was not taken over.")
     elif result.extra_refused:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 from mintpilot.core.gap import PASSABLE, Belief, GapKind, KnowledgeGap
+from mintpilot.core.geometry import Ints, frozen
 from mintpilot.core.mission import AskingSettings
 from mintpilot.core.query import Answer, Evidence, Query, Reply, topics
 from mintpilot.core.semantic_map import SemanticMap
@@ -18,6 +19,21 @@ ATTRIBUTES_NOT_KNOWN: Final = 2
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Grant:
+    """An explicit yes for a region: it covers what was shown, for as long as answers count (method, section 12)."""
+
+    gap: str
+    """Id of the obstacle gap."""
+    cells: Ints
+    """Flat indices (n,) of the region's cells as it was shown when the question was put."""
+    given_s: float
+    """When the answer came, mission clock."""
+
+    def __post_init__(self) -> None:
+        frozen(self.cells)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class BeliefState:
     """Everything that answers and pictures have taught so far."""
 
@@ -25,6 +41,8 @@ class BeliefState:
     belief: Belief
     confirmed: frozenset[str] = frozenset()
     """Obstacle gaps that got an explicit yes."""
+    grants: tuple[Grant, ...] = ()
+    """Of each of these: the outline that was shown, and when the yes came; sorted by gap, none twice."""
     withdrawn: frozenset[str] = frozenset()
     """What is not asked again: what the operator does not know (`mintpilot.core.query.topics`, and target gaps of which
     two attributes were not known), and queries whose answers contradicted twice."""

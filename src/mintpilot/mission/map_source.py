@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import time
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 from mintpilot.core.events import FrameSeen, Timed
 from mintpilot.core.geometry import Floats
 from mintpilot.core.ports import Camera, Perception, Recorder
 from mintpilot.core.semantic_map import SemanticMap
-from mintpilot.mapping.builder import MapBuilder
+
+if TYPE_CHECKING:
+    from mintpilot.mapping.builder import MapBuilder
 
 
 class MapSource(Protocol):

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy import ndimage
 
 from mintpilot.core.decisions import Explore, FlyTrajectory, GoBack, RefuseFlight
 from mintpilot.core.errors import InfeasibleError
@@ -171,6 +170,8 @@ def landable_cells(map: SemanticMap, limits: VehicleLimits) -> Bools:
     reach = int(np.ceil(limits.radius_m / map.frame.resolution_m))
     y, x = np.mgrid[-reach : reach + 1, -reach : reach + 1]
     disc = (np.hypot(y, x) * map.frame.resolution_m <= limits.radius_m + map.frame.resolution_m / 2)[None]
+    from scipy import ndimage
+
     clear: Bools = ndimage.binary_erosion(free, disc, border_value=0)
     if map.frame.is_flat:
         return clear

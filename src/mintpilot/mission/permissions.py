@@ -68,6 +68,7 @@ def revoke(state: BeliefState, query: Query, part: int | None) -> BeliefState:
         map=map,
         belief=belief,
         confirmed=state.confirmed - gaps,
+        grants=tuple(grant for grant in state.grants if grant.gap not in gaps),
         asked=tuple(one for one in state.asked if not gaps & set(one.query.gap_ids)),
     )
 

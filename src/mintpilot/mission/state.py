@@ -95,6 +95,8 @@ class OpenQuestion:
     deadline_s: float
     """When it counts as unanswered, mission clock."""
     shown_s: float | None = None
+    shown_map: SemanticMap | None = None
+    """What it speaks of: a yes for a region covers the outline that it has here. None: it speaks of no region."""
     first_text: str = ""
     """The words that were there first, where better ones followed; else empty."""
     read_backs: int = 0
@@ -136,6 +138,8 @@ class MissionState:
     activity: Activity = Activity.NONE
     beliefs: BeliefState | None = None
     """None until the first map is there."""
+    known_passable: frozenset[str] = frozenset()
+    """Obstacle gaps of regions that the first map calls passable: nobody needs to say so."""
     survey: SurveyProgress | None = None
     task_begun_s: float | None = None
     """When flight time began to count, mission clock."""
@@ -220,6 +224,8 @@ class MissionState:
     def next_deadline_s(self) -> float:
         """The next moment at which passing time alone changes something, mission clock; infinity: none."""
         times = [self.question.deadline_s] if self.question is not None else []
+        if self.beliefs is not None:
+            times += [g.given_s + self.setup.mission.asking.answer_valid_s for g in self.beliefs.grants]
         if self.request is not None:
             times.append(self.request.deadline_s)
         return min(times, default=float("inf"))

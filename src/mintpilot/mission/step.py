@@ -14,6 +14,7 @@ from mintpilot.core.decisions import (
     NoPlan,
     RefuseFlight,
 )
+from mintpilot.core.gap import obstacle_id
 from mintpilot.core.inputs import (
     Answered,
     DeliberationEnded,
@@ -30,6 +31,7 @@ from mintpilot.core.inputs import (
 )
 from mintpilot.core.mission import Outcome
 from mintpilot.core.motion import MotionEnd
+from mintpilot.core.semantic_map import Knowledge
 from mintpilot.core.trajectory import VehicleState
 from mintpilot.mission import asking, clearing, flying, ordering, surveying
 from mintpilot.mission.belief_state import BeliefState
@@ -141,15 +143,19 @@ def _tick(t: Transition, event: Ticked) -> None:
         clearing.unanswered(t) if t.state.grounded else asking.unanswered(t)
     if request is not None and t.state.clock_s >= request.deadline_s:
         _without_decision(t, request, "the deliberation is overdue")
+    if t.state.beliefs is not None:
+        asking.check_permissions(t)
     ordering.pass_time(t)
 
 
 def _observed(t: Transition, event: MapObserved) -> None:
     beliefs = t.state.beliefs
     if beliefs is None:
-        t.set(beliefs=BeliefState(map=event.map, belief=prior_belief(())))
+        known = frozenset(obstacle_id(r.id) for r in event.map.regions if r.passable is Knowledge.YES)
+        t.set(beliefs=BeliefState(map=event.map, belief=prior_belief(())), known_passable=known)
     else:
         t.set(beliefs=replace(beliefs, map=event.map))
+        asking.check_permissions(t)
     match t.state.activity:
         case Activity.FIRST_LOOK:
             t.set(activity=Activity.NONE)

@@ -15,7 +15,13 @@ class Spec(BaseModel):
     """A part of a mission file: unknown keys are refused, numbers are finite, nothing is converted silently."""
 
     model_config = ConfigDict(
-        extra="forbid", strict=True, frozen=True, allow_inf_nan=False, use_attribute_docstrings=True, title=None
+        extra="forbid",
+        strict=True,
+        frozen=True,
+        allow_inf_nan=False,
+        use_attribute_docstrings=True,
+        title=None,
+        defer_build=True,
     )
 
 

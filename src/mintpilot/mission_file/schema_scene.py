@@ -47,7 +47,7 @@ class SmokeSpec(Spec):
     """Where it is."""
     toxic: bool
     """The truth: flying through it ends the mission."""
-    prior_safe: Probability = 0.5
+    prior_safe: Probability | None = None
     """Probability that it is safe, before any answer."""
 
 

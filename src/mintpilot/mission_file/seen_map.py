@@ -47,7 +47,7 @@ class _RegionForm(_Form):
     id: str
     kind: RegionKind
     passable: Knowledge
-    prior_passable: Probability
+    prior_passable: Probability | None
     description: str
 
 

@@ -59,10 +59,10 @@ def _start_faults(mission: MissionFile, world: MapWorld, bare: SemanticMap) -> I
     start = place_of(world.start_m, world.height_m)
     filled = with_solid_objects(bare, limits.radius_m)
     near = surroundings(filled, [start], limits.radius_m)
-    gap_m = float(near.least_gaps([start])[0]) * bare.frame.resolution_m
+    gap_m = near.gap_at(start) * bare.frame.resolution_m
     if gap_m < limits.radius_m - TOLERANCE_M:
         what = "something occupied or unknown"
-        if near.least_gaps([start])[0] < surroundings(bare, [start], limits.radius_m).least_gaps([start])[0]:
+        if near.gap_at(start) < surroundings(bare, [start], limits.radius_m).gap_at(start):
             what = "an object"
         yield _fault(
             ("world", "start_m"),

@@ -53,6 +53,13 @@ class Surroundings:
         gaps: Floats = _least_gaps(self.barred, self.spots(points_m), self.keep)
         return gaps
 
+    def gap_at(self, point_m: ArrayLike) -> float:
+        """The least distance of one point (3,) to a barred cell, in cells, at most `keep`. Compiles nothing."""
+        lowest = np.argwhere(self.barred)[:, ::-1]
+        spot = self.spots(point_m)[0]
+        apart = np.maximum(np.maximum(lowest - spot, spot - (lowest + 1)), 0.0)
+        return min(self.keep, float(np.sqrt((apart * apart).sum(axis=1).min(initial=np.inf))))
+
     def nearest(self, a_m: ArrayLike, b_m: ArrayLike) -> tuple[Ints, float, float]:
         """Of the segment from a to b, the first spot that comes nearer than `keep` to a barred cell.
 

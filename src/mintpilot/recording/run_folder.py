@@ -2,6 +2,7 @@
 
 config.json     what was to be done, with every setting resolved
 events.ndjson   all events exactly, one line each, written as they happen
+flight.mcap     the same for viewers such as Foxglove, written as it happens
 record.json     the record; replaced after every decision, final at the end
 frames/         pictures that the drone saw
 photographs/    those that the instruction asked for, one for each thing
@@ -40,6 +41,7 @@ from mintpilot.recording.build import build_record, versions
 from mintpilot.recording.event_log import EVENTS_FILE, EventLogWriter
 from mintpilot.recording.frames import FrameStore, write_jpeg
 from mintpilot.recording.history import History
+from mintpilot.recording.mcap_log import MCAP_FILE, McapRecorder
 from mintpilot.recording.record import MissionRecord, NoticeRecord
 
 _DECISIONS = (MissionStarted, Deliberated, Asked, PlanChosen, LegFlown, MissionEnded)
@@ -88,12 +90,14 @@ class RunFolder(Recorder):
             ) from error
         self._events = EventLogWriter(path / EVENTS_FILE, program=versions().get("mintpilot", ""), clock=clock)
         self._frames = FrameStore(path / "frames")
+        self._mcap = McapRecorder(path / MCAP_FILE, clock=clock)
 
     def record(self, event: Event) -> None:
         """Writes the event through at once. What cannot be written is noted, and the mission goes on."""
         self._history.add(event)
         if not isinstance(event, _DERIVED):
             self._guard("an event", lambda: self._events.append(event))
+        self._guard("the flight for viewers", lambda: self._mcap.record(event))
         if isinstance(event, LegFlown):
             self._photographed = event.stop_id if event.stop_id.startswith(f"{Action.PHOTOGRAPH}:") else ""
         if isinstance(event, FrameSeen):
@@ -120,6 +124,7 @@ class RunFolder(Recorder):
         if self._record is not None:
             return self._record
         self._guard("the end of the events", self._events.close)
+        self._guard("the end of the flight for viewers", self._mcap.close)
         record = self._record = self._write_record(reason)
         self._guard("pictures", lambda: self._frames.prune({s.view[0] for s in record.seen if s.view}))
         failures = write_products(record, self._history, self.path)

@@ -34,6 +34,8 @@ class Airframe:
     """Of one rotor."""
     motor_lag_s: float = 0.02
     """First-order lag of the thrust."""
+    spin: float = 1.0
+    """Sense of the front right rotor: 1 turns the body left, -1 right (ArduPilot's X frame)."""
     camera_fovy_deg: float = 58.0
     camera_pitch_rad: float = 0.26
     """How far the camera looks down."""
@@ -42,7 +44,8 @@ class Airframe:
     def rotors(self) -> tuple[tuple[float, float, float], ...]:
         """For each rotor: x and y in arm lengths' components, metres, and the sign of its drag torque."""
         r = self.arm_m * math.sqrt(0.5)
-        return ((r, -r, 1.0), (-r, -r, -1.0), (-r, r, 1.0), (r, r, -1.0))
+        s = self.spin
+        return ((r, -r, s), (-r, -r, -s), (-r, r, s), (r, r, -s))
 
     @property
     def mixer(self) -> Floats:

@@ -49,7 +49,7 @@ class Smoke:
     extent_m: Box
     toxic: bool
     """Truth: a hull that reaches into it ends the mission."""
-    prior_safe: float = 0.5
+    prior_safe: float | None = None
     """Probability from which the truth was drawn."""
 
 

@@ -54,7 +54,7 @@ def find_gaps(
         task: what is to be done.
         start_m: where the drone is, metres; ``nearest`` and ``left`` are judged from there, looking towards the middle
             of the map.
-        prior_passable: for regions that keep the default prior of `Region`.
+        prior_passable: for regions that have no prior of their own.
         finished: ids of stops already fulfilled; they are left out, and gaps that only they depended on too.
         honour_wishes: False gives up avoidances that are not strict.
     """

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Sequence
-from dataclasses import fields
 
 import numpy as np
 
@@ -18,7 +17,6 @@ from mintpilot.uncertainty.things import ROOM, Thing
 
 LOOK_REACH_M = 0.5
 """A room is looked into from within this distance of its viewpoint, metres."""
-_NO_PRIOR = next(field.default for field in fields(Region) if field.name == "prior_passable")
 
 
 def obstacle_gaps(
@@ -32,7 +30,7 @@ def obstacle_gaps(
             subject=region.id,
             description=region.description or _unnamed(f"the {region.kind}", region_middle_m(map, region), things),
             values=(PASSABLE, BLOCKED),
-            prior=_two(prior_passable if region.prior_passable == _NO_PRIOR else region.prior_passable),
+            prior=_two(prior_passable if region.prior_passable is None else region.prior_passable),
             position_m=region_middle_m(map, region),
         )
         for region in map.regions

@@ -12,7 +12,6 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
-from scipy.ndimage import distance_transform_edt
 
 from mintpilot.core.geometry import Bools, Box, Ints, Vec3
 from mintpilot.core.observation import RegionKind
@@ -118,6 +117,8 @@ def _around_box(map: SemanticMap, box: Box, distance_m: float) -> Bools:
 
 def _around_cells(map: SemanticMap, cells: Ints, distance_m: float) -> Bools:
     """The cells, and those whose centres are nearer than the distance and a cell's diagonal to one of theirs."""
+    from scipy.ndimage import distance_transform_edt
+
     inside = np.zeros(map.frame.size, bool)
     inside[cells] = True
     if not cells.size:

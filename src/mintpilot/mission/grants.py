@@ -1,0 +1,88 @@
+"""How far a yes for a region reaches: the outline that was shown, for so long (method, section 12)."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import replace
+
+import numpy as np
+from scipy import ndimage
+
+from mintpilot.core.gap import Belief, obstacle_id
+from mintpilot.core.geometry import Bools, GridFrame, Ints
+from mintpilot.core.mission import AskingSettings
+from mintpilot.core.semantic_map import Knowledge, SemanticMap
+from mintpilot.mission.belief_state import BeliefState, Grant
+
+MARGIN_VOXELS = 1
+"""A permission covers the outline that was shown, grown by this many voxels."""
+
+
+def granted(state: BeliefState, gaps: Collection[str], shown: SemanticMap, now_s: float) -> BeliefState:
+    """The state after an explicit yes for these obstacle gaps.
+
+    Args:
+        state: with the gaps among ``confirmed``.
+        gaps: ids of obstacle gaps.
+        shown: the map of which the question spoke.
+        now_s: mission clock.
+    """
+    outlines = {obstacle_id(region.id): region.cells for region in shown.regions}
+    fresh = [Grant(gap=gap, cells=outlines[gap], given_s=now_s) for gap in gaps if gap in outlines]
+    kept = [grant for grant in state.grants if grant.gap not in gaps]
+    return replace(state, grants=tuple(sorted([*kept, *fresh], key=lambda grant: grant.gap)))
+
+
+def reopened(
+    state: BeliefState, settings: AskingSettings, now_s: float, *, known: frozenset[str] = frozenset()
+) -> BeliefState:
+    """The state without the permissions that have aged or whose regions have outgrown what was shown.
+
+    Their gaps are open again with their prior, and so is every region that a map calls passable though nobody has said
+    so of it. The same state where nothing changes.
+
+    Args:
+        state: of the beliefs.
+        settings: how long answers count.
+        now_s: mission clock.
+        known: obstacle gaps of regions that were known to be passable before anybody was asked.
+    """
+    grants = {grant.gap: grant for grant in state.grants}
+    void: set[str] = set()
+    for region in state.map.regions:
+        gap = obstacle_id(region.id)
+        grant = grants.get(gap)
+        if grant is None:
+            unfounded = region.passable is Knowledge.YES and gap not in known
+        else:
+            unfounded = not covers(grant.cells, region.cells, state.map.frame)
+        if unfounded:
+            void.add(gap)
+    void |= {gap for gap, grant in grants.items() if now_s >= grant.given_s + settings.answer_valid_s}
+    return _without(state, frozenset(void)) if void else state
+
+
+def covers(outline: Ints, cells: Ints, frame: GridFrame) -> bool:
+    """Whether all cells lie within the outline, grown by `MARGIN_VOXELS`."""
+    if np.array_equal(outline, cells):
+        return True
+    allowed: Bools = np.zeros(frame.shape, bool)
+    allowed.ravel()[outline] = True
+    grown = ndimage.binary_dilation(allowed, np.ones((3, 3, 3), bool), MARGIN_VOXELS)
+    return bool(grown.ravel()[cells].all())
+
+
+def _without(state: BeliefState, gaps: frozenset[str]) -> BeliefState:
+    map = state.map
+    for region in map.regions:
+        if obstacle_id(region.id) in gaps and region.passable is Knowledge.YES:
+            map = map.with_region(region.id, Knowledge.OPEN)
+    factors = tuple(f for f in state.belief.factors if not any(gap.id in gaps for gap in f.gaps))
+    return replace(
+        state,
+        map=map,
+        belief=Belief(factors=factors),
+        confirmed=state.confirmed - gaps,
+        grants=tuple(grant for grant in state.grants if grant.gap not in gaps),
+        asked=tuple(one for one in state.asked if not gaps & set(one.query.gap_ids)),
+    )

@@ -1,0 +1,212 @@
+"""``flight.mcap``: the flight for viewers such as Foxglove, written from the same events as the lossless log.
+
+Unchunked and unbuffered: what was written is kept whatever happens to the program; a file without its footer is mended
+by ``mintpilot log recover``. Times are the mission's clock, counted from when the recording began.
+"""
+
+from __future__ import annotations
+
+import io
+import json
+import os
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import IO, Any, Final, cast
+
+import numpy as np
+from PIL import Image
+from pydantic import JsonValue
+
+from mintpilot.core.errors import RecordError
+from mintpilot.core.events import (
+    Asked,
+    Deliberated,
+    Event,
+    FrameSeen,
+    LegFlown,
+    MapUpdated,
+    MissionEnded,
+    MissionStarted,
+    Noticed,
+    OrderTaken,
+    PlanChosen,
+    Stepped,
+)
+from mintpilot.core.geometry import Floats
+from mintpilot.core.inputs import Ticked
+from mintpilot.core.observation import Frame
+from mintpilot.core.ports import Recorder
+from mintpilot.recording import mcap_scene as scene
+from mintpilot.recording.tree_data import tree_record
+
+MCAP_FILE: Final = "flight.mcap"
+PICTURE_S: Final = 1.0
+"""No more than one picture in so many seconds."""
+MOST_POSES: Final = 400
+"""Poses of one path in one message."""
+_JSON_SCHEMA: Final = json.dumps({"type": "object"}).encode()
+_LEVELS: Final = {"info": 2, "warning": 3}
+
+
+class McapRecorder(Recorder):
+    """Writes viewers' messages; close it, so that the file gets its footer.
+
+    Args:
+        path: the file; refused where it exists.
+        clock: wall-clock seconds since 1970.
+
+    Raises:
+        RecordError: the file cannot be made, or exists.
+    """
+
+    def __init__(self, path: Path, *, clock: Callable[[], float] = time.time) -> None:
+        from mcap.writer import CompressionType, Writer
+
+        try:
+            self._file = _WriteThrough(os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o644))
+        except OSError as error:
+            raise RecordError(f"cannot write {path}: {error.strerror}; give a new file") from error
+        self._writer = Writer(cast("IO[bytes]", self._file), use_chunking=False, compression=CompressionType.NONE)
+        self._writer.start(profile="", library="mintpilot")
+        self._begun_ns = int(clock() * 1e9)
+        self._mission_s = 0.0
+        self._channels: dict[str, int] = {}
+        self._counts: dict[str, int] = {}
+        self._next_picture_s = 0.0
+        self._closed = False
+
+    def record(self, event: Event) -> None:
+        """Writes what viewers show of the event. Raises `OSError` when the disk does not take it."""
+        match event:
+            case Stepped():
+                self._step(event)
+            case FrameSeen():
+                self._mission_s = max(self._mission_s, event.frame.time_s)
+                self._picture(event.frame)
+            case MapUpdated():
+                self._proto("/map", scene.map_message(event.map, self._stamp()))
+                self._proto("/grid", scene.grid_message(event.map, self._stamp()))
+            case LegFlown():
+                self._proto("/path/flown", self._path(event.log.position_m))
+            case PlanChosen():
+                if event.plan is not None and event.plan.legs:
+                    self._proto("/path/planned", self._path(event.plan.path_m))
+                self._say("info", event.certificate.text)
+            case Noticed():
+                self._say("warning", event.text)
+            case OrderTaken():
+                self._say("info", f"Order: {event.order.value}. {event.answer}")
+            case MissionStarted() | Deliberated() | Asked() | MissionEnded():
+                self._told(event)
+            case _:
+                pass
+
+    def close(self) -> None:
+        """Writes the footer and closes the file; a second call does nothing. Raises `OSError` as `record` does."""
+        if self._closed:
+            return
+        self._closed = True
+        try:
+            self._writer.finish()  # type: ignore[no-untyped-call]
+        finally:
+            self._file.close()
+
+    def _told(self, event: MissionStarted | Deliberated | Asked | MissionEnded) -> None:
+        match event:
+            case MissionStarted():
+                self._json("/mission", {"name": event.mission.name, "instruction": event.mission.instruction})
+            case Deliberated():
+                self._json(
+                    "/gaps",
+                    {"gaps": [{"id": g.id, "what": g.description, "prior": list(g.prior)} for g in event.gaps]},
+                )
+                if event.mint is not None:
+                    self._json("/tree", tree_record(event.mint, event.gaps).model_dump(mode="json"))
+                if event.chosen is not None:
+                    chosen = event.chosen
+                    self._json(
+                        "/query", {"query": chosen.query.id, "gain_bits": chosen.gain_bits, "score": chosen.score}
+                    )
+            case Asked():
+                self._json("/answer", {"question": event.question.text, "reply": event.answer.reply.value,
+                                       "text": event.answer.text, "latency_s": event.answer.latency_s})  # fmt: skip
+                self._say("info", f"{event.question.text} {event.answer.reply.value}")
+            case MissionEnded():
+                self._json("/verdict", {"outcome": event.verdict.outcome.value, "reason": event.verdict.reason})
+                self._say("info", f"{event.verdict.outcome.value}: {event.verdict.reason}")
+
+    def _step(self, event: Stepped) -> None:
+        self._mission_s = max(self._mission_s, event.input.time_s)
+        if isinstance(event.input, Ticked):
+            vehicle = event.input.vehicle
+            if vehicle is not None:
+                self._proto("/tf", scene.pose_message(vehicle, self._stamp()))
+        elif event.directives:
+            self._json("/directive", {"after": type(event.input).__name__, "directives": list(event.directives)})
+
+    def _picture(self, frame: Frame) -> None:
+        if self._mission_s < self._next_picture_s:
+            return
+        self._next_picture_s = self._mission_s + PICTURE_S
+        data = io.BytesIO()
+        Image.fromarray(frame.rgb).save(data, "JPEG", quality=80)
+        self._proto("/camera", scene.picture_message(data.getvalue(), self._stamp()))
+
+    def _path(self, path_m: Floats) -> Any:
+        step = max(1, len(path_m) // MOST_POSES)
+        kept = np.concatenate([path_m[::step], path_m[-1:]]) if len(path_m) else path_m
+        return scene.path_message(kept, self._stamp())
+
+    def _say(self, level: str, text: str) -> None:
+        self._proto("/log", scene.log_message(text, _LEVELS[level], self._stamp()))
+
+    def _stamp(self) -> int:
+        return self._begun_ns + int(self._mission_s * 1e9)
+
+    def _proto(self, topic: str, message: Any) -> None:
+        if topic not in self._channels:
+            name = message.DESCRIPTOR.full_name
+            schema = self._writer.register_schema(name, "protobuf", scene.descriptors_of(message))
+            self._channels[topic] = self._writer.register_channel(topic, "protobuf", schema)
+        self._write(topic, message.SerializeToString())
+
+    def _json(self, topic: str, fields: dict[str, JsonValue]) -> None:
+        if topic not in self._channels:
+            schema = self._writer.register_schema(f"mintpilot{topic.replace('/', '.')}", "jsonschema", _JSON_SCHEMA)
+            self._channels[topic] = self._writer.register_channel(topic, "json", schema)
+        self._write(topic, json.dumps(fields, ensure_ascii=False).encode())
+
+    def _write(self, topic: str, data: bytes) -> None:
+        self._counts[topic] = self._counts.get(topic, 0) + 1
+        stamp = self._stamp()
+        self._writer.add_message(
+            self._channels[topic], log_time=stamp, data=data, publish_time=stamp, sequence=self._counts[topic]
+        )
+
+
+class _WriteThrough:
+    """A file whose bytes are in the operating system's hands when `write` returns.
+
+    The writer wraps raw files in a buffer of its own, which a killed program would take with it.
+    """
+
+    def __init__(self, descriptor: int) -> None:
+        self._descriptor = descriptor
+        self._size = 0
+
+    def write(self, data: bytes) -> int:
+        rest = memoryview(data)
+        while rest:
+            done = os.write(self._descriptor, rest)
+            self._size, rest = self._size + done, rest[done:]
+        return len(data)
+
+    def tell(self) -> int:
+        return self._size
+
+    def flush(self) -> None:
+        """Nothing is held back."""
+
+    def close(self) -> None:
+        os.close(self._descriptor)
