@@ -78,6 +78,20 @@ BUILT_IN: Final = MappingProxyType(
                 "embedded": "mintpilot.language.embedded:EmbeddedModel",
             }
         ),
+        "speech": MappingProxyType(
+            {
+                "double": "mintpilot.voice.doubles:SpeechDouble",
+                "espeak": "mintpilot.voice.gpl:EspeakSpeech",
+                "piper": "mintpilot.voice.gpl:PiperSpeech",
+            }
+        ),
+        "recogniser": MappingProxyType(
+            {
+                "moonshine": "mintpilot.voice.moonshine:MoonshineRecogniser",
+                "whisper": "mintpilot.voice.whisper:WhisperRecogniser",
+            }
+        ),
+        "activity": MappingProxyType({"silero": "mintpilot.voice.silero:SileroActivity"}),
     }
 )
 """Port → name → where it is. Every entry is called without arguments to make a part; one of ``frames`` with the place

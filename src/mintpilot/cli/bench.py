@@ -187,6 +187,35 @@ def language(
     return guarded(work, as_json=json, debug=debug)
 
 
+@bench.command
+def voice(
+    *,
+    clips: Path | None = None,
+    most: int | None = None,
+    voices: int = 6,
+    out: Path | None = None,
+    json: Json = False,
+    debug: Flag = False,
+) -> ExitCode:
+    """How answers are heard: recordings and synthesised phrases, clean and beside made rotor noise. Resumable by --out.
+
+    Args:
+        clips: Folder of WAV files in yes, no and unknown. Default: synthesised phrases only.
+        most: Recordings of each kind. Default: all.
+        voices: Number of synthesised voices, 0 to 6.
+        out: Folder of records. Default: nothing is kept.
+        json: Print one JSON object, and nothing else, on standard output.
+        debug: Show the traceback of an error.
+    """
+
+    def work() -> ExitCode:
+        from mintpilot.cli.bench_voice import bench_voice
+
+        return bench_voice(clips, most=most, voices=voices, out=out, as_json=json)
+
+    return guarded(work, as_json=json, debug=debug)
+
+
 def _run(made: Callable[[], Experiment], flags: BenchFlags) -> ExitCode:
     def work() -> ExitCode:
         from mintpilot.cli.bench_run import run_bench

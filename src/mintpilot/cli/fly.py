@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
 from contextlib import ExitStack
 from dataclasses import dataclass
 from datetime import UTC, datetime
@@ -18,6 +17,7 @@ from mintpilot.core.errors import InputError
 if TYPE_CHECKING:
     from rich.console import Console
 
+    from mintpilot.assembly.api import AnyOperator
     from mintpilot.assembly.talk import Talk
     from mintpilot.cli.progress import Narrator
     from mintpilot.core.events import Event
@@ -29,7 +29,7 @@ class FlightOptions:
     """How a mission is flown, as the command line says it."""
 
     operator: str | None
-    """``terminal``, ``console`` or ``scripted``; None: the terminal's where somebody is there."""
+    """``terminal``, ``console``, ``voice`` or ``scripted``; None: the terminal's where somebody is there."""
     vehicle: str
     strategy: str
     seed: int | None
@@ -77,7 +77,7 @@ def fly(path: Path, options: FlightOptions) -> ExitCode:
             record = run_mission(
                 path,
                 operator=_operators(
-                    options.operator, errors, narrator, served, real=options.vehicle.startswith("mavlink:")
+                    options.operator, errors, narrator, served, stack, real=options.vehicle.startswith("mavlink:")
                 ),
                 vehicle=options.vehicle,
                 strategy=options.strategy,
@@ -112,26 +112,32 @@ def _somebody(console: Console) -> bool:
 
 
 def _operators(
-    choice: str | None, console: Console, narrator: Narrator, served: ServedPage | None, *, real: bool
-) -> tuple[Callable[[Talk], Operator] | str, ...]:
+    choice: str | None,
+    console: Console,
+    narrator: Narrator,
+    served: ServedPage | None,
+    closing: ExitStack,
+    *,
+    real: bool,
+) -> tuple[AnyOperator, ...]:
     """Whoever answers: the page first, and the terminal beside it where somebody is there."""
     pages = () if served is None else (served.operator,)
     if pages and (choice == "console" or not _somebody(console)):
         return pages
-    return (*pages, _operator(choice, console, narrator, real=real))
+    return (*pages, *_present(choice, console, narrator, closing, real=real))
 
 
-def _operator(
-    choice: str | None, console: Console, narrator: Narrator, *, real: bool
-) -> Callable[[Talk], Operator] | str:
-    """What makes the person at the terminal an operator, or the name of the scripted one."""
+def _present(
+    choice: str | None, console: Console, narrator: Narrator, closing: ExitStack, *, real: bool
+) -> tuple[AnyOperator, ...]:
+    """The person here, or the scripted operator. By voice, keys answer as well."""
     if choice is None and not _somebody(console) and real:
         raise InputError(
             "a real vehicle needs somebody who answers and can call it back: use --operator terminal or console "
             "(--operator scripted is for the vehicle double)"
         )
     if choice == "scripted" or (choice is None and not _somebody(console)):
-        return "scripted"
+        return ("scripted",)
     if sys.stdin is None:
         raise InputError("--operator terminal needs a standard input; use --operator scripted where nobody is there")
     from mintpilot.cli.progress import Attended
@@ -143,4 +149,17 @@ def _operator(
         )
         return Attended(person, narrator)
 
-    return made
+    if choice != "voice":
+        return (made,)
+    from mintpilot.assembly.voiced import voice_operator
+    from mintpilot.voice.devices import PortAudioLink
+
+    link = PortAudioLink()
+    closing.callback(link.close)
+
+    def spoken(talk: Talk) -> Operator:
+        person = voice_operator(link, talk, lambda text: console.print(f"[spoken] {text}", markup=False))
+        closing.callback(person.close)
+        return person
+
+    return (spoken, made) if _somebody(console) else (spoken,)

@@ -35,7 +35,7 @@ Seed: TypeAlias = Annotated[int | None, Parameter(name="--seed")]
 StrategyArgs: TypeAlias = Annotated[list[str] | None, Parameter(name="--strategy-arg", negative="")]
 Llm: TypeAlias = Annotated[str | None, Parameter(name="--llm")]
 Lang: TypeAlias = Annotated[str | None, Parameter(name="--lang")]
-OperatorName: TypeAlias = Literal["terminal", "console", "scripted"]
+OperatorName: TypeAlias = Literal["terminal", "console", "voice", "scripted"]
 Port: TypeAlias = Annotated[int | None, Parameter(validator=validators.Number(gte=0, lte=65535))]
 VehicleName: TypeAlias = Literal["mujoco", "kinematic"]
 
@@ -131,8 +131,8 @@ def run(
 
     Args:
         mission: The mission file (YAML).
-        operator: Who answers: you at this terminal, you on a web page (console), or a script that knows the truth.
-            Default: you, where there is a terminal.
+        operator: Who answers: you at this terminal, you on a web page (console), you by voice and keys, or a script
+            that knows the truth. Default: you at this terminal, where there is one.
         vehicle: mujoco: physics and camera; kinematic: a fast point mass; or a real one by its address, e.g.
             mavlink://udpin:127.0.0.1:14540.
         strategy: How it decides what to ask.
@@ -393,15 +393,20 @@ def check(
         "mintpilot doctor --json",
     )
 )
-def doctor(*, json: Json = False, debug: Flag = False) -> ExitCode:
+def doctor(*, audio: Flag = False, json: Json = False, debug: Flag = False) -> ExitCode:
     """Look at this machine: what is installed, what is missing, and how to get it.
 
     Args:
+        audio: Try speech and hearing: says a word, hears it again, and shows the microphone's level.
         json: Print one JSON object, and nothing else, on standard output.
         debug: Show the traceback of an error.
     """
     from mintpilot.cli.doctor import examine
 
+    if audio:
+        from mintpilot.cli.doctor_audio import examine_audio
+
+        return guarded(lambda: examine_audio(as_json=json), as_json=json, debug=debug)
     return guarded(lambda: examine(as_json=json), as_json=json, debug=debug)
 
 

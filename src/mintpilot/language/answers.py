@@ -88,6 +88,20 @@ def order_in(text: str, lang: str = "en") -> Order | None:
     return next(found, None)
 
 
+def confirmation_in(text: str, lang: str = "en") -> bool | None:
+    """Whether a whole utterance confirms (True) or denies (False) what was read back; None: neither.
+
+    Raises:
+        UnknownNameError: another language.
+    """
+    if lang not in ANSWER_WORDS:
+        raise UnknownNameError("language", lang, ANSWER_WORDS)
+    whole, known = utterance(spoken(text)), ANSWER_WORDS[lang]
+    if len(text) > LONGEST or (vetoes(text, lang, Reply.YES) and whole not in listed(known.no)):
+        return None
+    return True if whole in listed(known.confirm) else False if whole in listed(known.no) else None
+
+
 def _by_key(heard: _Heard, pending: Reply | None) -> Reading:
     key = heard.text.strip().casefold()
     key = heard.known.keys.get(key, key)

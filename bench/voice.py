@@ -1,0 +1,42 @@
+"""How answers are heard, into docs/results.md. `python -m bench.voice --clips FOLDER [--most N]`."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from bench.sections import Section, keep
+from bench.sections import Table as PageTable
+from mintpilot.benchmark.voice_report import VoiceOptions, measure_voice, voice_tables
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--clips", type=Path)
+    parser.add_argument("--most", type=int, default=60)
+    parser.add_argument("--voices", type=int, default=6)
+    parser.add_argument("--snr", type=float, nargs="*", default=[20, 10, 5, 0])
+    parser.add_argument("--out", type=Path, default=Path("runs/bench-voice"))
+    options = parser.parse_args()
+    wanted = VoiceOptions(
+        clips=options.clips, most=options.most, voices=options.voices, snrs_db=(None, *options.snr), out=options.out
+    )
+    result = measure_voice(wanted, print)
+    keep(
+        Section(
+            name="56-voice",
+            title="Voice",
+            command="python -m bench.voice --clips FOLDER "
+            f"--most {options.most} --voices {options.voices} --snr {' '.join(f'{s:g}' for s in options.snr)}",
+            how="One-second recordings of yes, no and other words, and phrases synthesised in several voices; rotor "
+            f"noise is made. The least probability, {result.confidence:g}, was chosen on every other clip; all figures "
+            "are of the rest. Yes and no are taken as answers to a question about smoke; yes counts as heard although "
+            "it still has to be read back and confirmed.",
+            tables=[PageTable(caption=c, header=h, rows=r) for c, h, r in voice_tables(result)],
+            notes=result.notes,
+        )
+    )
+
+
+if __name__ == "__main__":
+    main()

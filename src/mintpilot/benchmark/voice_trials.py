@@ -1,0 +1,194 @@
+"""How answers are heard: clips and synthesised phrases beside rotors, each trial one record, resumable."""
+
+from __future__ import annotations
+
+import json
+import time
+import zlib
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import asdict, dataclass
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+
+from mintpilot.assembly.sample_question import sample_question
+from mintpilot.core.errors import InputError
+from mintpilot.core.gap import GapKind
+from mintpilot.core.geometry import Floats
+from mintpilot.core.query import Order
+from mintpilot.core.reading import AnsweredBy, ReadingKind, guarded_replies
+from mintpilot.language.answers import confirmation_in, order_in, read_answer
+from mintpilot.voice.audio import read_wav
+from mintpilot.voice.hearing import Ear, Hearing, Segmenter
+from mintpilot.voice.ports import RATE_HZ, Activity, Speech
+from mintpilot.voice.rotor import mixed
+
+OTHER = "other"
+"""What is said is no answer, order or confirmation."""
+_BEFORE_S, _AFTER_S = 0.6, 0.8
+FILE = "voice.jsonl"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Clip:
+    """Something said."""
+
+    name: str
+    source: str
+    """``recorded``, or the voice."""
+    says: str
+    """``yes``, ``no``, ``confirm``, ``stop``, ``come back``, ``land`` or `OTHER`."""
+    samples: Callable[[], Floats]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class VoiceTrial:
+    """One clip in one condition."""
+
+    name: str
+    source: str
+    says: str
+    snr_db: float | None
+    """None: no rotors."""
+    text: str
+    second: str
+    probability: float
+    utterances: int
+    sound_s: float
+    seconds: float
+    """Work of activity and recognition on this machine."""
+    answer_s: float
+    """Of it, from the utterance's end to its text; without the silence that ends an utterance."""
+
+    @property
+    def key(self) -> tuple[str, float | None]:
+        """What was tried."""
+        return self.name, self.snr_db
+
+
+def recorded_clips(folder: Path, most: int | None) -> list[Clip]:
+    """The WAV files below ``yes``, ``no`` and ``unknown`` in a folder, evenly chosen; the first ``most`` of each.
+
+    Raises:
+        InputError: there are none.
+    """
+    found = []
+    for name, says in (("yes", "yes"), ("no", "no"), ("unknown", OTHER)):
+        files = sorted((folder / name).glob("*.wav"))
+        step = max(1, len(files) // most) if most else 1
+        for file in files[::step][:most]:
+            found.append(
+                Clip(name=f"{name}/{file.stem}", source="recorded", says=says, samples=partial(read_wav, file))
+            )
+    if not found:
+        raise InputError(f"{folder}: no WAV files in its folders yes, no and unknown")
+    return found
+
+
+SYNTHETIC = (
+    *((text, text) for text in ("yes", "no", "confirm", "stop", "come back", "land")),
+    *(
+        (text, OTHER)
+        for text in ("what is that", "wait a second", "twenty seven", "I said nothing", "pass me the salt")
+    ),
+)
+"""Phrases with what they say."""
+
+
+def synthetic_clips(voices: Iterable[tuple[str, Speech, str, float]]) -> list[Clip]:
+    """The phrases in several voices: name, speech, its language or accent, speed."""
+    return [
+        Clip(
+            name=f"{name}/{text}", source=name, says=says,
+            samples=partial(speech.say, text, lang=lang, speed=speed),
+        )
+        for name, speech, lang, speed in voices
+        for text, says in SYNTHETIC
+    ]  # fmt: skip
+
+
+def run_trials(
+    clips: Iterable[Clip],
+    snrs_db: Iterable[float | None],
+    ear: Ear,
+    activity: Callable[[], Activity],
+    out: Path | None,
+    progress: Callable[[str], object] = lambda _: None,
+) -> Iterator[VoiceTrial]:
+    """Every clip in every condition; what the file in ``out`` holds already is not tried again."""
+    done = {trial.key: trial for trial in read_trials(out)} if out is not None else {}
+    wanted = list(clips)
+    for snr_db in snrs_db:
+        for number, clip in enumerate(wanted):
+            if (clip.name, snr_db) in done:
+                yield done[clip.name, snr_db]
+                continue
+            trial = _tried(clip, snr_db, ear, activity())
+            if out is not None:
+                out.mkdir(parents=True, exist_ok=True)
+                with (out / FILE).open("a") as file:
+                    file.write(json.dumps(asdict(trial)) + "\n")
+            progress(f"{condition(snr_db)}: {number + 1} of {len(wanted)}")
+            yield trial
+
+
+def read_trials(out: Path) -> list[VoiceTrial]:
+    """The records of a folder; a last line that was cut off is left out."""
+    found = []
+    if (out / FILE).exists():
+        for line in (out / FILE).read_text().splitlines():
+            try:
+                found.append(VoiceTrial(**json.loads(line)))
+            except (ValueError, TypeError):
+                continue
+    return found
+
+
+def condition(snr_db: float | None) -> str:
+    """A noise condition in words."""
+    return "clean" if snr_db is None else f"{snr_db:g} dB"
+
+
+def outcome(trial: VoiceTrial, confidence: float) -> str:
+    """What the voice operator takes it for: yes, no, an order or a confirmation; `OTHER`: it asks again, or nothing.
+
+    Yes and no are answers to a question about smoke; a yes is still to be read back and confirmed then.
+    """
+    texts = (trial.text, trial.second)
+    orders = [order_in(text) for text in texts]
+    if Order.HOLD in orders:
+        return "stop"
+    if trial.probability < confidence:
+        return OTHER
+    if orders[0] is not None and orders[0] is orders[1]:
+        return {Order.RETURN: "come back", Order.LAND: "land"}.get(orders[0], orders[0].value)
+    if [confirmation_in(text) for text in texts] == [True, True]:
+        return "confirm"
+    question = sample_question(GapKind.OBSTACLE)
+    readings = {
+        read_answer(text, question, guarded=guarded_replies(question), by=AnsweredBy.VOICE) for text in texts
+    }  # fmt: skip
+    reading = readings.pop()
+    is_reply = reading.kind in (ReadingKind.YES, ReadingKind.NO, ReadingKind.READ_BACK)
+    return reading.reply.value if not readings and is_reply and reading.reply is not None else OTHER
+
+
+def _tried(clip: Clip, snr_db: float | None, ear: Ear, activity: Activity) -> VoiceTrial:
+    spoken = clip.samples()
+    rng = np.random.default_rng([zlib.crc32(clip.name.encode()), 0 if snr_db is None else int(snr_db) + 100])
+    sound = np.concatenate([np.zeros(int(_BEFORE_S * RATE_HZ)), spoken, np.zeros(int(_AFTER_S * RATE_HZ))])
+    if snr_db is not None:  # the ratio is that of the clip, not of the silence around it
+        sound = mixed(sound, snr_db - 10 * float(np.log10(len(spoken) / len(sound))), rng)
+    begun = time.perf_counter()
+    utterances = Segmenter(activity, ear.settings).feed(np.concatenate([sound, np.zeros(int(_AFTER_S * RATE_HZ))]))
+    cut = time.perf_counter()
+    heard: list[Hearing] = [ear.hear(utterance) for utterance in utterances]
+    ended = time.perf_counter()
+    best = max(heard, key=lambda h: h.duration_s, default=None)
+    return VoiceTrial(
+        name=clip.name, source=clip.source, says=clip.says, snr_db=snr_db,
+        text=best.text if best else "", second=best.second if best else "",
+        probability=best.probability if best else 0.0, utterances=len(heard),
+        sound_s=len(sound) / RATE_HZ, seconds=ended - begun, answer_s=(ended - cut) / max(1, len(heard)),
+    )  # fmt: skip
