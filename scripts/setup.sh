@@ -12,10 +12,11 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 readonly LEVEL=${1:-dev}
 readonly VENV=.venv
 readonly GL_PACKAGES="libegl1 libegl-mesa0 libgl1-mesa-dri"
+readonly BROWSER=chromium # for the tests of the web page
 readonly GL_SPARE=libosmesa6 # a second way to draw; newer systems have it no more
 
 case $LEVEL in
-    run) EXTRAS=sim ;;
+    run) EXTRAS=sim,console ;;
     dev) EXTRAS=sim,dev,bench,docs ;;
     *) echo "setup: '$LEVEL' must be run or dev" >&2; exit 2 ;;
 esac
@@ -67,6 +68,12 @@ install_gl() {
         || say "flying in MuJoCo needs system libraries; ask your administrator for: sudo apt-get install -y ${missing[*]}"
 }
 
+# A browser for the developer's tests. Without it they are skipped.
+install_browser() {
+    [ "$LEVEL" = dev ] && [ ! -x /usr/bin/chromium ] || return 0
+    apt_install "$BROWSER" || say "the tests of the web page need a browser; ask your administrator for: sudo apt-get install -y $BROWSER"
+}
+
 make_venv() {
     local python version
     if ! python=$(find_python); then
@@ -105,6 +112,7 @@ else
     make_venv
 fi
 install_gl
+install_browser
 say "installing MintPilot and what it needs (a minute or two the first time)"
 if ! "$VENV/bin/python" -m pip install --quiet --quiet --disable-pip-version-check -e ".[$EXTRAS]"; then
     say "pip could not install the packages; check the network or the package index, then run make setup again"

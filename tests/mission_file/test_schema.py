@@ -26,7 +26,7 @@ EXAMPLES = [*sorted((ROOT / "examples").glob("*.yaml")), ROOT / "examples" / "my
 @pytest.mark.parametrize(
     ("spec", "noun", "differs"),
     [
-        (schema.VehicleSpec, VehicleLimits, {"endurance_s"}),
+        (schema.VehicleSpec, VehicleLimits, {"endurance_s", "returns"}),
         (schema.AskingSpec, AskingSettings, {"strategy_arguments"}),
         (schema.SurveySpec, SurveySettings, {"resolution_m"}),
         (schema_scene.SolidSpec, scene.Solid, {"attributes"}),

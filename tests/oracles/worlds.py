@@ -87,6 +87,10 @@ class World:
         )
 
 
+FAILURE_S = 600.0
+"""Price of somebody in a room that is skipped, seconds."""
+
+
 class BruteForce:
     """A plan space that enumerates: every joint hypothesis, every order of rooms, plain Dijkstra for every leg."""
 
@@ -156,6 +160,7 @@ class BruteForce:
             enters=enters,
             binds=binds,
             skips=skips,
+            stakes=tuple((room, "present", FAILURE_S) for room in sorted(skips)),
         )
 
     def _path(self, start: Cell, goal: Cell, blocked: frozenset[Cell]) -> list[Cell] | None:

@@ -11,7 +11,7 @@ from mintpilot.core.errors import InfeasibleError, MissionError
 from mintpilot.core.gap import ABSENT, BLOCKED, PASSABLE, PRESENT, Assumptions, GapKind, KnowledgeGap
 from mintpilot.core.geometry import GridFrame
 from mintpilot.core.observation import RegionKind
-from mintpilot.core.plan import PlanningProblem, Site, Stop, VehicleLimits
+from mintpilot.core.plan import PlanningProblem, Shortage, Site, Stop, VehicleLimits
 from mintpilot.core.semantic_map import Cell, Knowledge, Region, SemanticMap
 from mintpilot.core.task import Action
 from mintpilot.planning.task_planner import GridPlanner
@@ -105,7 +105,7 @@ def test_an_unreachable_stop_is_named() -> None:
         GridPlanner().open(problem(cells, go(4.25, 0.25)))
 
 
-def test_an_unreachable_room_matters_only_if_somebody_is_there() -> None:
+def test_an_unreachable_room_is_left_undone_and_not_asked_about() -> None:
     cells = np.full((1, 5, 9), FREE)
     cells[0, :, 4] = WALL
     site = Site(position_m=(4.25, 0.25, 0.25), reach_m=0.1, value=PRESENT)
@@ -114,9 +114,12 @@ def test_an_unreachable_room_matters_only_if_somebody_is_there() -> None:
     space = GridPlanner().open(problem(cells, go(0.25, 2.25), look, gaps=(presence,)))
     plan = space.optimistic(Assumptions())
     assert plan is not None
-    assert plan.relies_on == plan.skips == {"presence:room"}
-    assert space.cautious(Assumptions()) is None
-    assert space.optimistic(Assumptions.exactly({"presence:room": PRESENT})) is None
+    assert plan.relies_on == plan.skips == frozenset()
+    assert [(one.stop.id, one.resource) for one in plan.leaves_undone] == [("look", Shortage.WAY)]
+    assert plan.stakes == (("presence:room", PRESENT, look.price_s),)
+    for other in (space.cautious(Assumptions()), space.optimistic(Assumptions.exactly({"presence:room": PRESENT}))):
+        assert other is not None
+        assert other.signature == plan.signature
 
 
 def test_a_stop_without_a_gap_to_choose_its_site_is_refused() -> None:

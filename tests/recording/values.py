@@ -169,6 +169,8 @@ def built(cls: Any, depth: int) -> st.SearchStrategy[Any]:
     """Instances, each field by its hint; those that break a rule of the class are not used."""
     hints = typing.get_type_hints(cls)
     fields = {f.name: st.deferred(lambda n=f.name: values(hints[n], depth + 1)) for f in dataclasses.fields(cls)}  # type: ignore[misc]
+    prices = {name: st.floats(0, 999) for name in fields if name.endswith("price_s")}
+    fields |= prices
     if cls is Query:
         literals = values(typing.get_args(hints["literals"])[0], depth + 1)
         fields["literals"] = st.lists(literals, min_size=1, max_size=2).map(tuple)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -14,7 +16,7 @@ from mintpilot.core.plan import VehicleLimits
 from mintpilot.core.semantic_map import Knowledge
 from mintpilot.core.task import Action, Avoidance, Reference, SubGoal, Task
 from mintpilot.uncertainty import find_gaps, frame_problem
-from mintpilot.uncertainty.findings import told_apart
+from mintpilot.uncertainty.findings import Prices, told_apart
 
 from .worlds import START_M, room, smoke, step, thing, world
 
@@ -202,7 +204,20 @@ def test_the_problem_holds_what_was_found() -> None:
     limits = VehicleLimits()
     problem = frame_problem(map, MEDICINE, findings, start_m=START_M, limits=limits, finished=frozenset({"x"}))
     assert (problem.map, problem.start_m, problem.limits) == (map, START_M, limits)
-    assert (problem.stops, problem.gaps, problem.finished) == (findings.stops, findings.gaps, frozenset({"x"}))
+    assert (problem.gaps, problem.finished, problem.home_m) == (findings.gaps, frozenset({"x"}), None)
+    assert [stop.sites for stop in problem.stops] == [stop.sites for stop in findings.stops]
+    assert [(stop.step, stop.text) for stop in problem.stops] == [(s.n, s.text) for s in MEDICINE.steps]
+
+
+def test_stops_have_the_prices_of_their_steps_of_people_or_the_usual_one() -> None:
+    first, second = MEDICINE.subgoals
+    dear = replace(MEDICINE, subgoals=(replace(first, price_s=7.0), second))
+    map = world([RED, BLUE, PERSON])
+    findings = find_gaps(map, dear, start_m=START_M)
+    for people_s, expected in ((None, [7.0, 50.0]), (900.0, [7.0, 900.0])):
+        prices = Prices(usual_s=50.0, people_s=people_s)
+        problem = frame_problem(map, dear, findings, start_m=START_M, limits=VehicleLimits(), prices=prices)
+        assert [stop.price_s for stop in problem.stops] == expected
 
 
 COLOURS = st.sampled_from(["red", "blue", "green", "grey"])

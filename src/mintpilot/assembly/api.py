@@ -19,6 +19,7 @@ from mintpilot.mission.explanations import explanations
 from mintpilot.mission.preview import preview
 from mintpilot.mission_file.reader import read_mission
 from mintpilot.mission_file.schema import MissionFile
+from mintpilot.vehicle.address import SCHEME, parse_address
 
 if TYPE_CHECKING:
     from mintpilot.recording.record import MissionRecord
@@ -102,6 +103,7 @@ def run_mission(
     llm: str | LanguageModel | None = None,
     lang: str | None = None,
     perception: str | None = None,
+    accept_failsafes: bool = False,
     briefs: bool = False,
 ) -> MissionRecord:
     """Flies a mission and keeps what happened.
@@ -110,7 +112,8 @@ def run_mission(
         mission: a mission file's path, or its contents.
         operator: who answers and gives orders, or what makes such a one of the mission's language; ``"scripted"``: one
             that knows the truth, with the errors that the file states. Several may be given.
-        vehicle: ``"mujoco"`` or ``"kinematic"``; a mission on a given map is always flown by the latter.
+        vehicle: ``"mujoco"`` or ``"kinematic"``; a mission on a given map is always flown by the latter. Or a real one:
+            ``"mavlink://udpin:127.0.0.1:14540"``.
         strategy: name of the method of asking.
         strategy_arguments: its own, e.g. ``{"quantile": 0.8}``; they override those of the file.
         seed: overrides the seed in the file.
@@ -121,6 +124,7 @@ def run_mission(
             the file says, and that is none.
         lang: in which questions are asked; default: as the file says.
         perception: registered name of what makes objects of pictures; default: as the file says.
+        accept_failsafes: fly a real vehicle although its autopilot's fail-safes are not as they should be.
         briefs: whether the operator is asked go or no-go before take-off. One always is where a language model read the
             instruction.
 
@@ -130,13 +134,16 @@ def run_mission(
     Raises:
         InputError: the mission, or a name, is wrong.
         RecordError: the run folder cannot be written.
-        MissingPartError: MuJoCo is chosen, or a language model, but not installed.
+        MissingPartError: MuJoCo is chosen, a language model or a real vehicle, but not what it needs is installed.
+        DeviceError: a real vehicle cannot be reached, or is not ready to fly.
     """
     file, folder = _opened(mission, base)
     choices = Choices(
         strategy=strategy,
         strategy_arguments=_arguments(file, strategy, strategy_arguments),
         vehicle=_vehicle(vehicle),
+        address=vehicle if vehicle.startswith(SCHEME) else "",
+        accept_failsafes=accept_failsafes,
         perception=perception or file.perception.use,
         briefs=briefs,
         namers=tuple(file.perception.namers) if perception in (None, file.perception.use) else (),
@@ -201,10 +208,13 @@ def _arguments(file: MissionFile, strategy: str, given: Mapping[str, Argument] |
 
 
 def _vehicle(name: str) -> VehicleChoice:
-    try:
-        return VehicleChoice(name)
-    except ValueError:
-        raise UnknownNameError("vehicle", name, list(VehicleChoice)) from None
+    if name.startswith(SCHEME):
+        parse_address(name)  # a wrong one is told before anything is worked out
+        return VehicleChoice.MAVLINK
+    simulated = [choice for choice in VehicleChoice if choice is not VehicleChoice.MAVLINK]
+    if name not in simulated:
+        raise UnknownNameError("vehicle", name, [*simulated, f"{SCHEME}udpin:127.0.0.1:14540"])
+    return VehicleChoice(name)
 
 
 def _operator(operator: AnyOperator, world: World, file: MissionFile, talk: Talk) -> Operator:

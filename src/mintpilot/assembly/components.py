@@ -4,26 +4,28 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from contextlib import AbstractContextManager, ExitStack
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from mintpilot.assembly.briefing import briefing_of
+from mintpilot.assembly.real_vehicle import make_vehicle
 from mintpilot.assembly.registry import load
 from mintpilot.assembly.strategies import Argument, make_objective, make_strategy, strategy_label
 from mintpilot.assembly.talk import Talk
 from mintpilot.assembly.worlds import World
 from mintpilot.core.errors import InputError
 from mintpilot.core.geometry import Floats, GridFrame
-from mintpilot.core.ports import Operator, Perception, Recorder
+from mintpilot.core.ports import Operator, Perception, Recorder, Vehicle
 from mintpilot.core.semantic_map import SemanticMap
 from mintpilot.core.task import Action
 from mintpilot.elicitation.wording import word_question
 from mintpilot.mission.components import MissionComponents
 from mintpilot.mission.deliberation import DeliberationParts
 from mintpilot.mission.map_source import CameraMapSource, GivenMap, MapSource
+from mintpilot.mission.process_worker import ProcessWorker
 from mintpilot.mission_file.schema import OperatorSpec
 from mintpilot.uncertainty.keep_away import with_keep_away
 
@@ -44,6 +46,8 @@ class VehicleChoice(StrEnum):
     """Four rotors, physics, rendered RGB-D: the map is made by a survey flight."""
     KINEMATIC = "kinematic"
     """Follows trajectories exactly; the map is what a perfect survey would show."""
+    MAVLINK = "mavlink"
+    """A real vehicle; the map is given, and there is no camera."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -54,6 +58,10 @@ class Choices:
     strategy_arguments: Mapping[str, Argument] = field(default_factory=dict)
     """The strategy's own, e.g. ``{"quantile": 0.8}``."""
     vehicle: VehicleChoice = VehicleChoice.MUJOCO
+    address: str = ""
+    """Where a real vehicle is reached: ``mavlink://udpin:127.0.0.1:14540``."""
+    accept_failsafes: bool = False
+    """Fly a real vehicle although its autopilot's fail-safes are not as they should be."""
     planner: str = "grid"
     perception: str = "geometric"
     namers: tuple[str, ...] = ()
@@ -82,6 +90,19 @@ def deliberation_parts(world: World, choices: Choices, talk: Talk | None = None)
         proposer=talk.proposer if talk is not None else None,
         word=talk.word if talk is not None else word_question,
     )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PartsBesideVehicle:
+    """Makes the parts of deliberation in the process that deliberates. Language models stay with the loop."""
+
+    world: World
+    choices: Choices
+    lang: str
+
+    def __call__(self) -> DeliberationParts:
+        """The parts; questions are worded in the mission's language by template, and bettered by the loop."""
+        return deliberation_parts(self.world, self.choices, Talk(lang=self.lang))
 
 
 def scripted_operator(world: World, spec: OperatorSpec) -> ScriptedOperator:
@@ -168,6 +189,8 @@ class _Components(AbstractContextManager[MissionComponents]):
                 f"'photograph {photographs[0].reference.phrase}' cannot be done: this vehicle has no camera. "
                 "Fly with one that has, or leave the picture out."
             )
+        if choices.vehicle is VehicleChoice.MAVLINK:
+            return self._beside_vehicle()
         from mintpilot.simulation.kinematic import KinematicSimulator
         from mintpilot.simulation.scene_map_source import SceneMapSource
 
@@ -177,6 +200,23 @@ class _Components(AbstractContextManager[MissionComponents]):
             given = SceneMapSource(world.scene, world.map, kinematic.state)
         changes = any(solid.appears_s > 0 for solid in world.scene.solids)
         return self._made(kinematic, given, surveys=False, watch_map=changes)
+
+    def _beside_vehicle(self) -> MissionComponents:
+        """A real vehicle on a given map. Nobody judges it, and it ends on the ground."""
+        world, choices = self._world, self._choices
+        if world.task.needs_confirmation and not any(operator.attended for operator in self._operators):
+            raise InputError(
+                f"'{world.mission.instruction}' was read by a language model: a real vehicle flies it only after "
+                "somebody has said go; use --operator terminal or console"
+            )
+        vehicle = make_vehicle(world, choices.address, accept_failsafes=choices.accept_failsafes)
+        self._stack.callback(vehicle.close)
+        beside = PartsBesideVehicle(world=world, choices=choices, lang=self._talk.lang)
+        return replace(
+            self._common(vehicle, GivenMap(world.map), known=world.map, watch_map=False),
+            worker=lambda _: ProcessWorker(beside),
+            lands=True,
+        )
 
     def __exit__(self, *_: object) -> None:
         self._stack.close()
@@ -190,22 +230,28 @@ class _Components(AbstractContextManager[MissionComponents]):
     def _made(
         self, simulator: MujocoSimulator | KinematicSimulator, source: MapSource, *, surveys: bool, watch_map: bool
     ) -> MissionComponents:
+        return replace(
+            self._common(simulator, source, known=None if surveys else self._world.map, watch_map=watch_map),
+            begin_task=simulator.begin_mission,
+            judge=simulator,
+            surveys=surveys,
+            simulated=True,
+        )
+
+    def _common(
+        self, vehicle: Vehicle, source: MapSource, *, known: SemanticMap | None, watch_map: bool
+    ) -> MissionComponents:
         parts = deliberation_parts(self._world, self._choices, self._talk)
         briefed = self._choices.briefs or self._world.task.needs_confirmation
-        known = None if surveys else self._world.map
         return MissionComponents(
             parts=parts,
             briefing=briefing_of(parts, known, lang=self._talk.lang) if briefed else None,
-            vehicle=simulator,
+            vehicle=vehicle,
             map_source=source,
             operators=self._operators,
             recorder=self._recorder,
-            begin_task=simulator.begin_mission,
-            judge=simulator,
             improve=self._talk.improve,
             remarks=self._remarks,
-            surveys=surveys,
-            simulated=True,
             watch_map=watch_map,
             digests=self._digests,
             strategy_name=strategy_label(self._choices.strategy, self._choices.strategy_arguments),

@@ -143,6 +143,7 @@ def _assembled(file: MissionFile, mission: Mission, scene: Scene, rules: FlightR
     from mintpilot.simulation.scene_map import map_of_scene
 
     task = _with_wishes(task_of(file) or parse(mission.instruction, home_m=mission.start_m), file)
+    scene = _with_people_sought(scene, task)
     seen = map_of_scene(scene, mission.resolution_m)
     return World(
         mission=replace(mission, limits=_at_pace(mission.limits, task)),
@@ -233,7 +234,23 @@ def _scene_on_map(map_: SemanticMap, name: str, task: Task, truths: Mapping[str,
         goal_objects=wanted.objects,
         places_m=wanted.places,
         must_be_found=wanted.people,
+        occupants_sought=task.seeks_people,
     )
+
+
+def _with_people_sought(scene: Scene, task: Task) -> Scene:
+    """The scene in which only people whom the task is about must be found: others fail no mission."""
+    from mintpilot.assembly.declared import PERSON
+
+    if task.seeks_people:
+        return scene
+    spoken_of = any(PERSON in (g.reference.label, g.thing.label if g.thing else "") for g in task.subgoals)
+    people = tuple(p if spoken_of else replace(p, must_be_found=False) for p in scene.persons)
+    rooms = tuple(
+        room if room.occupant is None else replace(room, occupant=replace(room.occupant, must_be_found=False))
+        for room in scene.rooms
+    )
+    return replace(scene, persons=people, rooms=rooms)
 
 
 def _hull(limits: VehicleLimits, *, flat: bool) -> FlightRules:
@@ -258,6 +275,8 @@ def listed_words(world: MapWorld | ScenarioWorld | SceneWorld | SeenWorld) -> fr
 
 def _with_wishes(task: Task, file: MissionFile) -> Task:
     """The task with the distances that the file wants kept, besides those of the instruction."""
+    if file.seeks_people is not None and file.seeks_people is not task.seeks_people:
+        task = replace(task, seeks_people=file.seeks_people)
     if not file.keep_away:
         return task
     from mintpilot.language.phrases import parse_phrase

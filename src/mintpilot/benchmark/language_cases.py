@@ -86,7 +86,7 @@ QUESTIONS: dict[str, Question] = {
         Saying(kind=SayingKind.ATTRIBUTE, name="colour", value="red"),
         "Do you mean the red box?",
         yes="I fly to the small red box",
-        no="I ask further which one it is",
+        no="I ask further: 2 others are left",
     ),
 }  # fmt: skip
 """Name → question: may a region be crossed, is somebody there, which thing is meant."""

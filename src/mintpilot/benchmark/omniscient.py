@@ -17,6 +17,7 @@ from mintpilot.core.tree import Node
 from mintpilot.elicitation.objectives.optimal import Optimal
 from mintpilot.mission.deliberation import Deliberation, DeliberationParts
 from mintpilot.mission.rehearsal import begin
+from mintpilot.reasoning.classes import least_cost_s
 
 PERSON_M = 0.3
 """Half the edge of a person's mark in pictures."""
@@ -64,7 +65,7 @@ def survey_world(world: World, *, experiment: str, cell: str, planner: WarmPlann
         experiment=experiment,
         cell=cell,
         seed=world.seed,
-        possible=best is not None,
+        possible=best is not None and not best.leaves_undone,
         best_s=best.cost_s if best else None,
         gaps=tuple(
             GapTruth(
@@ -87,10 +88,11 @@ def mattered(gap: KnowledgeGap, given: Assumptions, space: PlanSpace, settings: 
 
     For a target gap: whether its values lead to different places at all, since any other one is the wrong one.
     """
-    plans = [space.optimistic(given.assume(gap.id, (value,))) for value in gap.values]
+    cases = [given.assume(gap.id, (value,)) for value in gap.values]
+    plans = [space.optimistic(case) for case in cases]
     if any(dict(p.binds).get(gap.id) for p in plans if p is not None):
         return len(gap.values) > 1
-    costs = [_cost(plan) for plan in plans]
+    costs = [_cost(plan, case) for plan, case in zip(plans, cases, strict=True)]
     if len(set(costs)) <= 1:
         return False
     return max(costs) - min(costs) > settings.delta_c_s
@@ -109,8 +111,8 @@ def _least_questions(world: World, parts: DeliberationParts) -> float | None:
     return 1.0 / decision.scored.score if isinstance(decision, Ask) else 0.0
 
 
-def _cost(plan: Plan | None) -> float:
-    return plan.cost_s if plan is not None else float("inf")
+def _cost(plan: Plan | None, given: Assumptions) -> float:
+    return least_cost_s(plan, given) if plan is not None else float("inf")
 
 
 def _branched(node: Node) -> set[str]:

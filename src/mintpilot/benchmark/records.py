@@ -59,6 +59,10 @@ class TrialRecord(Part):
     success: bool
     reason: str
     """In one sentence."""
+    people_found: int = 0
+    """Of the people who need help, how many were reached."""
+    people_there: int = 0
+    """How many there are."""
     questions: int = 0
     unsure: int = 0
     """Questions that were answered "I don't know"."""

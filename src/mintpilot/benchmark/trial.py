@@ -71,6 +71,8 @@ def fly_trial(
         outcome=outcome,
         success=outcome == Outcome.SUCCESS.value,
         reason=reason,
+        people_found=flight.people[0],
+        people_there=flight.people[1],
         questions=len(tally.asked),
         unsure=tally.unsure,
         contradictions=tally.contradictions,
@@ -108,6 +110,7 @@ class _Flight:
 
     def __init__(self) -> None:
         self._begun_s = 0.0
+        self.people = (0, 0)
         self._ended_s = 0.0
 
     def seconds(self) -> float:
@@ -141,6 +144,8 @@ class _Flight:
             named = replace(made, parts=parts, strategy_name=method.name)
             verdict = fly_mission(self._timed(named if survey is None else survey.shared(named)))
             self._ended_s = made.vehicle.state().time_s
+            if made.judge is not None:
+                self.people = made.judge.people()
         return verdict
 
     def _timed(self, components: MissionComponents) -> MissionComponents:

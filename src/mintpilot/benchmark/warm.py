@@ -44,4 +44,5 @@ def _key(problem: PlanningProblem) -> Hashable:
         problem.stops,
         problem.limits,
         problem.finished,
+        problem.home_m,
     )

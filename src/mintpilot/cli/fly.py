@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Callable
 from contextlib import ExitStack
 from dataclasses import dataclass
 from datetime import UTC, datetime
@@ -11,12 +12,12 @@ from typing import TYPE_CHECKING
 
 from mintpilot.cli.exits import ExitCode, hush
 from mintpilot.cli.interrupts import stop_if_wanted
+from mintpilot.cli.web_page import PageOptions, ServedPage
 from mintpilot.core.errors import InputError
 
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from mintpilot.assembly.api import AnyOperator
     from mintpilot.assembly.talk import Talk
     from mintpilot.cli.progress import Narrator
     from mintpilot.core.events import Event
@@ -28,7 +29,7 @@ class FlightOptions:
     """How a mission is flown, as the command line says it."""
 
     operator: str | None
-    """``terminal``, ``voice`` or ``scripted``; None: the terminal's where somebody is there."""
+    """``terminal``, ``console``, ``voice`` or ``scripted``; None: the terminal's where somebody is there."""
     vehicle: str
     strategy: str
     seed: int | None
@@ -43,6 +44,10 @@ class FlightOptions:
     """In which questions are asked; None: as the mission file says."""
     perception: str | None = None
     """What makes objects of pictures, by name; None: as the mission file says."""
+    accept_failsafes: bool = False
+    """Fly a real vehicle whose autopilot's fail-safes are not as they should be."""
+    page: PageOptions | None = None
+    """Where the web page is served, beside whoever else answers; None: it is not."""
 
 
 def fly(path: Path, options: FlightOptions) -> ExitCode:
@@ -59,16 +64,21 @@ def fly(path: Path, options: FlightOptions) -> ExitCode:
     mission = read_mission(path)
     errors = LenientConsole(stderr=True)
     out = options.out or new_run_path(Path("runs"), mission.name, datetime.now(UTC))
-    with Narrator(errors) as narrator, ExitStack() as closing:
+    with ExitStack() as stack, Narrator(errors) as narrator:
+        served = ServedPage(options.page, errors, stack) if options.page is not None else None
 
         def tell(event: Event) -> None:
             narrator(event)
+            if served is not None:
+                served.record(event)
             stop_if_wanted(event)
 
         try:
             record = run_mission(
                 path,
-                operator=_operator(options.operator, errors, narrator, closing),
+                operator=_operators(
+                    options.operator, errors, narrator, served, stack, real=options.vehicle.startswith("mavlink:")
+                ),
                 vehicle=options.vehicle,
                 strategy=options.strategy,
                 strategy_arguments=arguments,
@@ -78,7 +88,8 @@ def fly(path: Path, options: FlightOptions) -> ExitCode:
                 llm=options.llm,
                 lang=options.lang,
                 perception=options.perception,
-                briefs=_somebody(errors) and options.operator != "scripted",
+                accept_failsafes=options.accept_failsafes,
+                briefs=served is not None or (_somebody(errors) and options.operator != "scripted"),
             )
         except KeyboardInterrupt:
             narrator.rest()
@@ -100,10 +111,28 @@ def _somebody(console: Console) -> bool:
     return sys.stdin is not None and sys.stdin.isatty() and console.is_terminal
 
 
+def _operators(
+    choice: str | None, console: Console, narrator: Narrator, served: ServedPage | None, stack: ExitStack, *, real: bool
+) -> tuple[Callable[[Talk], Operator] | str, ...]:
+    """Whoever answers: the page first, and the terminal beside it where somebody is there."""
+    pages = () if served is None else (served.operator,)
+    if choice == "voice":
+        keys = (_operator("terminal", console, narrator, real=real),) if _somebody(console) else ()
+        return (_spoken(console, stack), *pages, *keys)
+    if pages and (choice == "console" or not _somebody(console)):
+        return pages
+    return (*pages, _operator(choice, console, narrator, real=real))
+
+
 def _operator(
-    choice: str | None, console: Console, narrator: Narrator, closing: ExitStack
-) -> AnyOperator | tuple[AnyOperator, ...]:
-    """What makes the person here an operator, or the name of the scripted one. By voice, keys answer as well."""
+    choice: str | None, console: Console, narrator: Narrator, *, real: bool
+) -> Callable[[Talk], Operator] | str:
+    """What makes the person at the terminal an operator, or the name of the scripted one."""
+    if choice is None and not _somebody(console) and real:
+        raise InputError(
+            "a real vehicle needs somebody who answers and can call it back: use --operator terminal or console "
+            "(--operator scripted is for the vehicle double)"
+        )
     if choice == "scripted" or (choice is None and not _somebody(console)):
         return "scripted"
     if sys.stdin is None:
@@ -117,17 +146,20 @@ def _operator(
         )
         return Attended(person, narrator)
 
-    if choice != "voice":
-        return made
+    return made
+
+
+def _spoken(console: Console, stack: ExitStack) -> Callable[[Talk], Operator]:
+    """What makes the person at the microphone an operator; everything that is said is shown as well."""
     from mintpilot.assembly.voiced import voice_operator
     from mintpilot.voice.devices import PortAudioLink
 
     link = PortAudioLink()
-    closing.callback(link.close)
+    stack.callback(link.close)
 
-    def spoken(talk: Talk) -> Operator:
+    def made(talk: Talk) -> Operator:
         person = voice_operator(link, talk, lambda text: console.print(f"[spoken] {text}", markup=False))
-        closing.callback(person.close)
+        stack.callback(person.close)
         return person
 
-    return (spoken, made) if _somebody(console) else spoken
+    return made

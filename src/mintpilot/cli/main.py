@@ -35,7 +35,8 @@ Seed: TypeAlias = Annotated[int | None, Parameter(name="--seed")]
 StrategyArgs: TypeAlias = Annotated[list[str] | None, Parameter(name="--strategy-arg", negative="")]
 Llm: TypeAlias = Annotated[str | None, Parameter(name="--llm")]
 Lang: TypeAlias = Annotated[str | None, Parameter(name="--lang")]
-OperatorName: TypeAlias = Literal["terminal", "voice", "scripted"]
+OperatorName: TypeAlias = Literal["terminal", "console", "voice", "scripted"]
+Port: TypeAlias = Annotated[int | None, Parameter(validator=validators.Number(gte=0, lte=65535))]
 VehicleName: TypeAlias = Literal["mujoco", "kinematic"]
 
 
@@ -66,7 +67,7 @@ def demo(
 ) -> ExitCode:
     """Fly one of the paper's two missions and show it.
 
-    On a terminal the drone asks you.
+    On a terminal the drone asks you; where a browser can be opened, on a page as well.
 
     Args:
         mission: The warehouse on fire, or the boxes of which one holds the medicine.
@@ -82,9 +83,11 @@ def demo(
     """
     from mintpilot.cli.demos import demo_path
     from mintpilot.cli.fly import FlightOptions, fly
+    from mintpilot.cli.web_page import PageOptions, browser_can_open
 
     options = FlightOptions(
         operator="scripted" if headless else None,
+        page=PageOptions(opens=True, patience_s=20.0) if not headless and not json and browser_can_open() else None,
         vehicle=vehicle,
         strategy="mint",
         seed=seed,
@@ -108,13 +111,18 @@ def run(
     /,
     *,
     operator: OperatorName | None = None,
-    vehicle: VehicleName = "mujoco",
+    vehicle: str = "mujoco",
     strategy: str = "mint",
     strategy_arg: StrategyArgs = None,
     seed: Seed = None,
     llm: Llm = None,
     lang: Lang = None,
     perception: str | None = None,
+    accept_failsafes: Flag = False,
+    host: str | None = None,
+    port: Port = None,
+    tls_cert: Path | None = None,
+    tls_key: Path | None = None,
     out: Path | None = None,
     json: Json = False,
     debug: Flag = False,
@@ -123,25 +131,37 @@ def run(
 
     Args:
         mission: The mission file (YAML).
-        operator: Who answers: you at this terminal, you by voice and keys, or a script that knows the truth.
-            Default: you at this terminal, where there is a
-            terminal.
-        vehicle: Physics and camera, or a fast point mass.
+        operator: Who answers: you at this terminal, you on a web page (console), you by voice
+            and keys, or a script that knows the truth. Default: you at this terminal, where there is a terminal.
+        vehicle: mujoco: physics and camera; kinematic: a fast point mass; or a real one by its address, e.g.
+            mavlink://udpin:127.0.0.1:14540.
         strategy: How it decides what to ask.
         strategy_arg: NAME=VALUE, an argument of the strategy; may be given several times. Overrides that of the file.
         seed: Of everything that is drawn at random; overrides the one in the file.
         llm: Language model for words: template (none), endpoint, embedded, or a plug-in's. Default: as the file says.
         lang: Language of the questions: en, de, fr or es. Default: as the file says.
         perception: Who makes objects of pictures: geometric, segments, or a plug-in's. Default: as the file says.
+        accept_failsafes: Fly a real vehicle although its autopilot's fail-safes are not as they should be.
+        host: Of the web page: where it is served. Default: 127.0.0.1, for this machine only; elsewhere with TLS only.
+        port: Of the web page. Default: any that is free.
+        tls_cert: Of the web page: its certificate, PEM.
+        tls_key: Of the web page: the certificate's key, PEM.
         out: Run folder; a new one under ./runs by default.
         json: Print the outcome, questions, gaps and figures as one JSON object, and nothing else, on standard output.
             The whole record is in the run folder.
         debug: Show the traceback of an error.
     """
     from mintpilot.cli.fly import FlightOptions, fly
+    from mintpilot.cli.web_page import PageOptions
 
+    page = None
+    if operator == "console":
+        page = PageOptions(host=host or "127.0.0.1", port=port or 0, tls_cert=tls_cert, tls_key=tls_key)
+    elif (host, port, tls_cert, tls_key) != (None, None, None, None):
+        return fail("--host, --port, --tls-cert and --tls-key go with --operator console only", as_json=json)
     options = FlightOptions(
         operator=operator,
+        page=page,
         vehicle=vehicle,
         strategy=strategy,
         strategy_args=tuple(strategy_arg or ()),
@@ -151,8 +171,70 @@ def run(
         llm=llm,
         lang=lang,
         perception=perception,
+        accept_failsafes=accept_failsafes,
     )
     return guarded(lambda: fly(mission, options), as_json=json, debug=debug)
+
+
+@app.command(
+    help_epilogue=examples(
+        "mintpilot preflight examples/medicine.yaml --vehicle mavlink://udpin:127.0.0.1:14540",
+    )
+)
+def preflight(
+    mission: Path, /, *, vehicle: str, accept_failsafes: Flag = False, json: Json = False, debug: Flag = False
+) -> ExitCode:
+    """Look at a real vehicle on the ground: link, position, home, fence, fail-safes, battery against the plan's needs.
+
+    Fail-safes and fence are set as the mission needs them, and read back.
+
+    Args:
+        mission: The mission file (YAML).
+        vehicle: Its address: mavlink://udpin:127.0.0.1:14540, mavlink://serial:/dev/ttyUSB0:57600.
+        accept_failsafes: Leave the autopilot's fail-safes as they are.
+        json: Print a list of JSON objects, and nothing else, on standard output.
+        debug: Show the traceback of an error.
+    """
+    from mintpilot.cli.preflight import check_vehicle_for
+
+    return guarded(
+        lambda: check_vehicle_for(mission, vehicle, accept_failsafes=accept_failsafes, as_json=json),
+        as_json=json,
+        debug=debug,
+    )
+
+
+@app.command(
+    name="vehicle-double",
+    help_epilogue=examples(
+        "mintpilot vehicle-double px4 --port 14540",
+        "mintpilot vehicle-double ardupilot --port 14550 --fault pilot@40 --mission examples/medicine.yaml",
+    ),
+)
+def vehicle_double(
+    flavour: Literal["px4", "ardupilot"],
+    /,
+    *,
+    port: Annotated[int, Parameter(validator=validators.Number(gte=1, lte=65535))] = 14540,
+    fault: Annotated[list[str] | None, Parameter(negative="")] = None,
+    mission: Path | None = None,
+    seed: Seed = None,
+    debug: Flag = False,
+) -> ExitCode:
+    """Run a test double of an autopilot: it speaks MAVLink over UDP on this machine. It is no firmware.
+
+    Args:
+        flavour: Whose ways it has.
+        port: Where it sends to.
+        fault: NAME@SECONDS, what goes wrong, and when; may be given several times. Names: silence, heartbeat,
+            refuse-arm, position-lost, position-jump, delay, reorder, duplicate, corrupt, pilot, battery, no-gripper.
+        mission: The mission in whose world it flies. Default: nothing is around it.
+        seed: Of the world, and of what is drawn at random. Default: as the file says.
+        debug: Show the traceback of an error.
+    """
+    from mintpilot.cli.vehicle_double import serve_double
+
+    return guarded(lambda: serve_double(flavour, port, fault or [], mission, seed), as_json=False, debug=debug)
 
 
 @app.command(

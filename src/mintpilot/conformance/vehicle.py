@@ -103,6 +103,8 @@ def _until_ended(vehicle: Vehicle, motion: int) -> MotionEnded:
     """Lets time pass until the motion has ended."""
     for _ in range(MOST_ADVANCES):
         for event in vehicle.advance(_state(vehicle).time_s + 0.5):
+            require(isinstance(event, MotionEnded), vehicle, f"a link changed though nothing is wrong: {event}")
+            assert isinstance(event, MotionEnded)
             require(event.motion == motion, vehicle, f"motion {event.motion} ended; {motion} was begun")
             return event
     require(False, vehicle, f"motion {motion} has not ended after {MOST_ADVANCES} calls of `advance`")

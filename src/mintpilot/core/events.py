@@ -38,6 +38,8 @@ class MissionStarted:
     """Whether it is flown in a simulator."""
     surveys: bool = False
     """Whether the first map is made by a survey flight."""
+    lands: bool = False
+    """Whether it ends on the ground, as a real vehicle's does."""
     briefing: Briefing | None = None
     """What must be answered with yes before take-off; None: nothing."""
 

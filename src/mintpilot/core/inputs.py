@@ -27,6 +27,8 @@ class Link(StrEnum):
     """The autopilot, or the simulator in its place."""
     POSITION = "position"
     """The vehicle's estimate of its position: bad or jumping."""
+    CONTROL = "control"
+    """The right to fly: down once a pilot, or a fail-safe, has taken the vehicle over."""
     MODEL = "model"
     """A language model or a recogniser."""
 
@@ -71,6 +73,8 @@ class MotionEnded:
     """What was flown; None for acts and refusals."""
     reason: str = ""
     """For refusals and failures: why."""
+    by_hand: str = ""
+    """For acts: what a person must do now, because the vehicle cannot; empty: nothing."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -164,3 +168,5 @@ Input: TypeAlias = (
 )
 OperatorInput: TypeAlias = QuestionShown | Answered | MoreTimeWanted | Ordered
 """What operators bring."""
+VehicleInput: TypeAlias = MotionEnded | LinkChanged
+"""What vehicles bring."""

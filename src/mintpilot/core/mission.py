@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field, fields
 from enum import StrEnum
 from typing import Any
@@ -9,7 +10,7 @@ from typing import Any
 from mintpilot.core.errors import MissionError
 from mintpilot.core.geometry import Box, Vec3
 from mintpilot.core.georeference import Georeference
-from mintpilot.core.plan import VehicleLimits
+from mintpilot.core.plan import LeftUndone, VehicleLimits
 
 
 class CriticalityRule(StrEnum):
@@ -120,6 +121,17 @@ class SurveySettings:
     """No new place is flown to after this time, seconds."""
 
 
+class ReturnRule(StrEnum):
+    """Whether the drone flies back to the start once its task is done."""
+
+    REQUIRED = "required"
+    """Every plan leaves enough battery for the way back."""
+    IF_POSSIBLE = "if-possible"
+    """It does where the battery that is left suffices; no stop is left undone for it."""
+    NONE = "none"
+    """It stays where its last stop was."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Mission:
     """Everything the loop needs to know of a mission, free of file formats."""
@@ -143,6 +155,14 @@ class Mission:
     """Edge of a voxel, metres."""
     georeference: Georeference | None = None
     """Where the map lies on the earth; None: not known."""
+    people_price_s: float | None = None
+    """What leaving somebody unseen costs, seconds of flight; None: ``asking.failure_price_s``."""
+    returns: ReturnRule = ReturnRule.NONE
+    """Whether the drone flies back to the start once its task is done."""
+
+    def __post_init__(self) -> None:
+        if self.people_price_s is not None and not 0 <= self.people_price_s < math.inf:
+            raise MissionError(f"people_price_s = {self.people_price_s}: must be finite and not below 0")
 
 
 class Outcome(StrEnum):
@@ -150,6 +170,8 @@ class Outcome(StrEnum):
 
     SUCCESS = "success"
     """Every sub-goal reached, everybody present found, nothing touched, within endurance."""
+    PARTIAL = "partial"
+    """Some stops were done, others knowingly left: the reason names them, and what ran short."""
     COLLISION = "collision"
     """The drone touched something."""
     TOXIC_SMOKE = "toxic-smoke"
@@ -173,9 +195,55 @@ class Outcome(StrEnum):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Achieved:
+    """A stop that was done."""
+
+    n: int
+    """Number of its step."""
+    text: str
+    """What was done, as a short sentence without a full stop."""
+    at_s: float
+    """When, seconds since the task began."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Left:
+    """A stop that was not done."""
+
+    n: int
+    """Number of its step."""
+    text: str
+    """What was not done, as a short sentence without a full stop."""
+    reason: str
+    """Why, with the figures, as a clause without a full stop."""
+    resource: str
+    """What ran short: a value of `mintpilot.core.plan.Shortage`, or ``ended`` where the mission ended before it."""
+    needed_s: float | None = None
+    """Seconds that it would have taken."""
+    available_s: float | None = None
+    """Seconds that there were."""
+
+
+def left_of(undone: LeftUndone) -> Left:
+    """What a plan leaves undone, as it is told."""
+    return Left(
+        n=undone.stop.step,
+        text=undone.stop.text or undone.stop.id,
+        reason=undone.reason,
+        resource=undone.resource.value,
+        needed_s=undone.needed_s,
+        available_s=undone.available_s,
+    )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Verdict:
     """What really happened, as the simulator saw it; on a real vehicle, as far as it is known."""
 
     outcome: Outcome
     reason: str
     """One plain sentence."""
+    achieved: tuple[Achieved, ...] = ()
+    """What was done, in order."""
+    left: tuple[Left, ...] = ()
+    """What was to be done and was not."""

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import hashlib
+import math
 from dataclasses import dataclass, field
+from enum import StrEnum
 
 import numpy as np
 
@@ -12,6 +14,9 @@ from mintpilot.core.gap import KnowledgeGap
 from mintpilot.core.geometry import Floats, Vec3, frozen
 from mintpilot.core.semantic_map import SemanticMap
 from mintpilot.core.task import Action
+
+PRICE_S = 600.0
+"""What leaving a stop undone costs where nothing else is said, seconds of flight."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -30,14 +35,16 @@ class VehicleLimits:
     """Flight time that is left for the mission, seconds; longer plans do not exist."""
     position_sigma_m: float = 0.0
     """Standard deviation of the known position, metres; three times as much is added to the clearance."""
+    reserve_s: float = 0.0
+    """Flight time that no plan may use, seconds."""
 
     def __post_init__(self) -> None:
         for name in ("radius_m", "cruise_mps", "max_acceleration_mps2", "endurance_s"):
             if not getattr(self, name) > 0:
                 raise MissionError(f"vehicle {name} = {getattr(self, name)}: must be above 0")
-        for name in ("margin_m", "position_sigma_m"):
-            if not getattr(self, name) >= 0:
-                raise MissionError(f"vehicle {name} = {getattr(self, name)}: must not be below 0")
+        for name in ("margin_m", "position_sigma_m", "reserve_s"):
+            if not 0 <= getattr(self, name) < math.inf:
+                raise MissionError(f"vehicle {name} = {getattr(self, name)}: must be finite and not below 0")
 
     @property
     def clearance_m(self) -> float:
@@ -74,6 +81,70 @@ class Stop:
     put anywhere between the others; the ordered ones keep their order."""
     dwell_s: float = 2.0
     """Time spent there, seconds; part of the cost."""
+    price_s: float = PRICE_S
+    """What leaving it undone costs where it is needed, seconds of flight."""
+    step: int = 0
+    """Number of the step of the task that it belongs to; 0: none."""
+    text: str = ""
+    """What is done there, as a short sentence without a full stop."""
+    chance: float = 1.0
+    """Probability that an optional stop is needed, as believed when the problem was framed."""
+
+    def __post_init__(self) -> None:
+        if not 0 <= self.price_s < math.inf:
+            raise MissionError(f"stop '{self.id}': price_s = {self.price_s}: must be finite and not below 0")
+
+
+class Shortage(StrEnum):
+    """What ran short for a stop that is left undone."""
+
+    BATTERY = "battery"
+    """Flight time, beside what the plan does instead."""
+    WAY = "way"
+    """No way there is known to be safe."""
+    THING = "thing"
+    """What it would deliver is not picked up."""
+    ANSWER = "answer"
+    """Which of several places is meant is not known."""
+    PRICE = "price"
+    """The flight would cost more than leaving it undone."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class LeftUndone:
+    """A stop that a plan leaves undone though it is, or may be, needed."""
+
+    stop: Stop
+    resource: Shortage
+    needed_s: float | None = None
+    """Flight time that doing it besides would take (or, alone, where it is too far even then), seconds."""
+    available_s: float | None = None
+    """Flight time that is left for it, or the price that it is worth, seconds."""
+
+    @property
+    def reason(self) -> str:
+        """Why, with the figures, as a clause without a full stop."""
+        match self.resource:
+            case Shortage.BATTERY:
+                needed, given = _seconds(self.needed_s or 0.0, self.available_s or 0.0)
+                return f"the way there needs {needed} s, the battery gives {given} s"
+            case Shortage.PRICE:
+                needed, given = _seconds(self.needed_s or 0.0, self.available_s or 0.0)
+                return f"the way there needs {needed} s, and leaving it undone counts for {given} s"
+            case Shortage.WAY:
+                return "no way there is known to be safe"
+            case Shortage.THING:
+                return "what it needs is not picked up"
+            case Shortage.ANSWER:
+                return "which one is meant is not known"
+
+
+def _seconds(needed: float, given: float) -> tuple[str, str]:
+    """Two times as whole seconds, or with the digits that tell them apart."""
+    for digits in (0, 1):
+        if f"{needed:.{digits}f}" != f"{given:.{digits}f}":
+            return f"{needed:.{digits}f}", f"{given:.{digits}f}"
+    return f"{needed:.2f}", f"{given:.2f}"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -91,6 +162,8 @@ class PlanningProblem:
     limits: VehicleLimits
     finished: frozenset[str] = frozenset()
     """Ids of stops that were already fulfilled; they are not among ``stops``."""
+    home_m: Vec3 | None = None
+    """Where the drone must be able to return to after its last stop; None: nowhere."""
 
     def gap(self, gap_id: str) -> KnowledgeGap:
         """The gap with that id. Raises `KeyError` for an unknown one."""
@@ -118,7 +191,11 @@ class Leg:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Plan:
-    """Ordered legs with their cost, and the gaps that the plan would break on or lose by (method, section 2)."""
+    """Ordered legs with their cost, and the gaps that the plan would break on or lose by (method, section 2).
+
+    What it costs under a joint hypothesis is the flight, and the prices of what it leaves undone there (section 9):
+    ``cost_s + undone_s`` and, for each entry of ``stakes`` whose gap has that value, its price.
+    """
 
     legs: tuple[Leg, ...]
     cost_s: float
@@ -130,7 +207,13 @@ class Plan:
     binds: tuple[tuple[str, str], ...] = ()
     """(gap id, value) chosen for each target gap, sorted."""
     skips: frozenset[str] = frozenset()
-    """Ids of presence gaps whose room it leaves out."""
+    """Ids of presence gaps whose room it leaves out, taking it for empty."""
+    leaves_undone: tuple[LeftUndone, ...] = ()
+    """Stops that it leaves undone though they are needed, or may be: in the order of the problem."""
+    undone_s: float = 0.0
+    """Prices of what it leaves undone that is needed whatever holds, seconds."""
+    stakes: tuple[tuple[str, str, float], ...] = ()
+    """(presence gap, value, seconds): what not looking there costs where the gap has that value; sorted."""
     signature: str = field(default="", compare=False)
     """Stable digest of places and way: plans of one plan class share it. Filled in when empty."""
 

@@ -13,7 +13,7 @@ from typing import Protocol, TypeAlias
 from mintpilot.core.events import Event
 from mintpilot.core.gap import Assumptions, Belief, KnowledgeGap
 from mintpilot.core.geometry import Floats, Ints, SmallInts
-from mintpilot.core.inputs import MotionEnded, OperatorInput
+from mintpilot.core.inputs import OperatorInput, VehicleInput
 from mintpilot.core.mission import AskingSettings, Verdict
 from mintpilot.core.motion import Motion
 from mintpilot.core.observation import Detection, Frame, NameGuess, RawFrame, Segment
@@ -346,13 +346,13 @@ class Vehicle(Protocol):
         """Brakes along the checked path and hovers; the motion then ends as stopped. Without a motion: nothing."""
         ...
 
-    def advance(self, until_s: float) -> tuple[MotionEnded, ...]:
-        """Lets time pass, at most up to that moment of its clock; less when a motion ends before.
+    def advance(self, until_s: float) -> tuple[VehicleInput, ...]:
+        """Lets time pass, at most up to that moment of its clock; less when something happens before.
 
         A simulator computes so far, a real vehicle waits. Nobody is called back meanwhile.
 
         Returns:
-            What ended, oldest first.
+            What ended, and which of its links (position, control) went down or came up, oldest first.
 
         Raises:
             DeviceError: the link is gone. The vehicle is then in its own fail-safe.
@@ -381,6 +381,10 @@ class Judge(Protocol):
 
     def final(self) -> Verdict:
         """The verdict at the end, success included."""
+        ...
+
+    def people(self) -> tuple[int, int]:
+        """(how many of the people who must be found were found so far, how many there are)."""
         ...
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from enum import StrEnum
@@ -71,6 +72,12 @@ class SubGoal:
     container, or handed over."""
     height_m: float | None = None
     """Height at which the drone arrives, metres; None: whichever is nearest."""
+    price_s: float | None = None
+    """What leaving it undone costs, seconds of flight; None: what a failed mission counts for."""
+
+    def __post_init__(self) -> None:
+        if self.price_s is not None and not 0 <= self.price_s < math.inf:
+            raise MissionError(f"price_s = {self.price_s} of a step: must be finite and not below 0")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -139,6 +146,14 @@ class Task:
             text = "look for everybody who needs help"
             found.append(Step(n=len(found) + 1, action="seek", target="everybody who needs help", place="", text=text))
         return tuple(found)
+
+    def step_for(self, number: int) -> Step:
+        """The step that a sub-goal belongs to; ``number`` counts the sub-goals from 1, 0 means the search for people.
+
+        Raises `IndexError` where there is none.
+        """
+        listed = [i for i, g in enumerate(self.subgoals, start=1) if not (self.seeks_people and _is_anybody(g))]
+        return self.steps[listed.index(number) if number in listed else -1]
 
     @property
     def keep_out(self) -> tuple[str, ...]:

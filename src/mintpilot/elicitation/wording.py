@@ -14,6 +14,9 @@ from mintpilot.core.tree import Mint
 from mintpilot.elicitation.phrases import joined, subject_of, thing_called
 from mintpilot.elicitation.sentences import sentence
 
+MOST_NAMED = 2
+"""So many candidates that are left are named; more are counted."""
+
 
 def word_question(query: Query, gaps: Sequence[KnowledgeGap], mint: Mint | None, *, attempt: int = 1) -> Question:
     """The question for a query, by template: at most 20 words, never negated, with what each answer does to the flight.
@@ -49,13 +52,25 @@ def _consequences(query: Query, about: tuple[KnowledgeGap, ...], mint: Mint | No
     plans = [_likeliest(mint, table == part) for part in range(query.part_count)]
     texts = []
     for part, (plan, sure) in enumerate(plans):
-        text = _flight(plan, sure, about)
+        text = _flight(plan, sure, about, _left(query, about, part, mint))
         others = [other for i, (other, _) in enumerate(plans) if i != part]
         costs = [other.cost_s for other in others if other is not None]
         longer = plan.cost_s - min(costs) if plan is not None and costs else 0.0
         settled = all(other_sure for _, other_sure in plans)
         texts.append(f"{text}, {longer:.0f} s longer" if settled and longer >= 1 else text)
     return tuple(texts)
+
+
+def _left(query: Query, about: tuple[KnowledgeGap, ...], part: int, mint: Mint) -> str:
+    """Of a query about one referent: which candidates an answer leaves, and that it is asked further."""
+    if len(about) != 1 or about[0].kind is not GapKind.TARGET:
+        return ""
+    gap = about[0]
+    chances = mint.belief.marginal(gap.id)
+    left = [v for v, p in zip(gap.values, chances, strict=True) if p > 0 and query.part_of({gap.id: v}) == part]
+    if len(left) <= MOST_NAMED:
+        return f"I ask further: {joined([thing_called(gap, value) for value in left], 'or')}"
+    return f"I ask further: {len(left)} {'of them' if part == YES_PART else 'others'} are left"
 
 
 def _likeliest(mint: Mint, agrees: Bools) -> tuple[Plan | None, bool]:
@@ -66,7 +81,7 @@ def _likeliest(mint: Mint, agrees: Bools) -> tuple[Plan | None, bool]:
     return mint.classes[best].plan, bool(np.count_nonzero(mass) <= 1)
 
 
-def _flight(plan: Plan | None, sure: bool, about: tuple[KnowledgeGap, ...]) -> str:
+def _flight(plan: Plan | None, sure: bool, about: tuple[KnowledgeGap, ...], left: str) -> str:
     if plan is None:
         return "I find no safe way" if sure else "I may find no safe way"
     i = "I" if sure else "I probably"
@@ -77,7 +92,10 @@ def _flight(plan: Plan | None, sure: bool, about: tuple[KnowledgeGap, ...]) -> s
             return f"{i} fly around {'it' if len(about) == 1 else 'them'}"
         return f"{i} fly through {'it' if len(about) == 1 else joined([subject_of(g) for g in entered], 'and')}"
     if kinds == {GapKind.PRESENCE}:
-        visited = [g for g in about if g.id not in plan.skips]
+        undone = {one.stop.gap for one in plan.leaves_undone}
+        visited = [g for g in about if g.id not in plan.skips | undone]
+        if len(about) == 1 and about[0].id in undone:
+            return f"{i} cannot reach it, and do what else I can"
         if not visited:
             return f"{i} fly past it" if len(about) == 1 else f"{i} fly past them"
         if len(about) == 1:
@@ -86,7 +104,7 @@ def _flight(plan: Plan | None, sure: bool, about: tuple[KnowledgeGap, ...]) -> s
     bound = dict(plan.binds)
     if len(about) == 1 and about[0].id in bound:
         if not sure:
-            return "I ask further which one it is"
+            return left
         return f"I fly to {thing_called(about[0], bound[about[0].id])}"
     return f"{i} fly for {plan.cost_s:.0f} s"
 

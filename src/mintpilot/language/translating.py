@@ -103,6 +103,12 @@ def consequence(english: str, tongue: Tongue) -> str:
     said = tongue.outcomes.get(plain)
     if said is None and plain.startswith("fly to "):
         said = tongue.outcomes["fly to {}"].format(noun_phrase(plain.removeprefix("fly to "), tongue))
+    elif left := re.fullmatch(r"ask further: (\d+) (of them|others) are left", plain):
+        said = tongue.outcomes[f"ask further: {{}} {left[2]} are left"].format(left[1])
+    elif which := re.fullmatch(r"ask further: (the .+?) or (the .+)", plain):
+        said = tongue.outcomes["ask further: {} or {}"].format(
+            *(noun_phrase(thing, tongue) for thing in which.groups())
+        )
     if said is None:
         return english
     said = tongue.probably.format(said) if likely else said

@@ -43,6 +43,8 @@ class MissionComponents:
     """True where the first map is made by a survey flight."""
     simulated: bool = False
     """True in a simulator only: baselines may then fly what is not known to be passable."""
+    lands: bool = False
+    """True for a real vehicle: however the mission ends, it returns if it can, and lands."""
     watch_map: bool = True
     """False where the map is given and nothing new can be seen."""
     camera_period_s: float = 0.5
@@ -60,7 +62,13 @@ class MissionComponents:
     @property
     def setup(self) -> Setup:
         """What stays the same for the whole mission."""
-        return Setup(mission=self.parts.mission, surveys=self.surveys, simulated=self.simulated, briefing=self.briefing)
+        return Setup(
+            mission=self.parts.mission,
+            surveys=self.surveys,
+            simulated=self.simulated,
+            lands=self.lands,
+            briefing=self.briefing,
+        )
 
     def started(self) -> MissionStarted:
         """The first event of the record."""
@@ -75,5 +83,6 @@ class MissionComponents:
             planner=self.planner_name,
             simulated=self.simulated,
             surveys=self.surveys,
+            lands=self.lands,
             briefing=self.briefing,
         )

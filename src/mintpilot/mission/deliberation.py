@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Protocol
@@ -10,8 +11,9 @@ from mintpilot.core.decisions import AskQuestion, FlyPlan, NoPlan, Reasoning
 from mintpilot.core.errors import InfeasibleError
 from mintpilot.core.gap import Belief, CorrelationGroup, KnowledgeGap
 from mintpilot.core.geometry import Vec3
-from mintpilot.core.mission import AskingSettings, Mission
+from mintpilot.core.mission import AskingSettings, Mission, ReturnRule
 from mintpilot.core.ports import (
+    Ask,
     Decision,
     Fly,
     ImpactMetric,
@@ -30,7 +32,7 @@ from mintpilot.mapping.knowledge import apply_knowledge
 from mintpilot.mission.belief_state import BeliefState, remaining_budget
 from mintpilot.mission.explanations import explanations
 from mintpilot.reasoning.belief import extend
-from mintpilot.uncertainty.findings import Findings, find_gaps, frame_problem
+from mintpilot.uncertainty.findings import Findings, Prices, find_gaps, frame_problem
 
 LEAST_ENDURANCE_S = 1e-3
 """A plan is framed with at least this flight time, seconds: an empty battery is no plan, not an error."""
@@ -101,16 +103,26 @@ def deliberate(state: BeliefState, parts: DeliberationParts, *, start_m: Vec3, e
     Raises:
         InfeasibleError: nothing can be flown, whatever the answers are.
     """
+    found: Deliberation | None
     try:
         found = _deliberate(state, parts, start_m=start_m, endurance_s=endurance_s, honour_wishes=True)
-        hopeless = isinstance(found.decision, Fly) and found.decision.plan is None
+        hopeless = isinstance(found.decision, Fly) and _left_s(found.decision) > 0
     except InfeasibleError:
         if not _wishes(state, parts, start_m):
             raise
-        hopeless = True
+        hopeless, found = True, None
     if hopeless and _wishes(state, parts, start_m):
-        return _deliberate(state, parts, start_m=start_m, endurance_s=endurance_s, honour_wishes=False)
+        without = _deliberate(state, parts, start_m=start_m, endurance_s=endurance_s, honour_wishes=False)
+        if found is None or isinstance(without.decision, Ask) or _left_s(without.decision) < _left_s(found.decision):
+            return without
+    assert found is not None, "an infeasible mission without wishes was raised"
     return found
+
+
+def _left_s(decision: Decision) -> float:
+    """Prices of what a decision to fly leaves undone; infinite where nothing is flown."""
+    plan = decision.plan if isinstance(decision, Fly) else None
+    return math.inf if plan is None else sum(one.stop.price_s for one in plan.leaves_undone)
 
 
 def decision_of(found: Deliberation, parts: DeliberationParts, explained: frozenset[str]) -> AskQuestion | FlyPlan:
@@ -184,7 +196,18 @@ def _deliberate(
         raise InfeasibleError(" ".join(findings.problems))
     state = replace(state, belief=belief)
     limits = replace(parts.mission.limits, endurance_s=max(endurance_s, LEAST_ENDURANCE_S))
-    problem = frame_problem(state.map, parts.task, findings, start_m=start_m, limits=limits, finished=state.finished)
+    mission = parts.mission
+    problem = frame_problem(
+        state.map,
+        parts.task,
+        findings,
+        start_m=start_m,
+        limits=limits,
+        finished=state.finished,
+        prices=Prices(usual_s=parts.settings.failure_price_s, people_s=mission.people_price_s),
+        belief=belief,
+        home_m=mission.start_m if mission.returns is ReturnRule.REQUIRED else None,
+    )
     situation = Situation(
         problem=problem,
         space=parts.planner.open(problem),

@@ -8,12 +8,12 @@ import numpy as np
 
 from mintpilot.core.decisions import FlyPlan, FlyTrajectory, GoBack, RefuseFlight
 from mintpilot.core.inputs import Link, MapObserved
-from mintpilot.core.mission import Outcome
+from mintpilot.core.mission import Achieved, Outcome, ReturnRule
 from mintpilot.core.plan import Leg, Plan
 from mintpilot.core.task import Action
 from mintpilot.mission.requests import Purpose
 from mintpilot.mission.state import Activity, Ending, Goal, uncertain_things
-from mintpilot.mission.transition import Transition
+from mintpilot.mission.transition import Transition, partial_reason
 
 MAX_REPLANS = 8
 """How often news in flight may send the drone back to deliberating before it goes home."""
@@ -24,7 +24,10 @@ MAX_HOPS = 6
 def fly_plan(t: Transition, plan: Plan, *, unsafe: bool = False) -> None:
     """Sets out on a plan. What an unsafe baseline takes for granted counts in a simulator only."""
     entered = {gap.partition(":")[2] for gap in plan.enters} if unsafe and t.state.setup.simulated else ()
-    t.set(plan=plan, leg=0, assume_passable=frozenset(entered))
+    wanted = (*(leg.stop for leg in plan.legs), *(one.stop for one in plan.leaves_undone))
+    t.set(plan=plan, leg=0, assume_passable=frozenset(entered), wanted=wanted)
+    if plan.leaves_undone:
+        t.tell(f"The battery or the way does not allow everything. {partial_reason((), t.left()[len(plan.legs) :])}")
     next_leg(t)
 
 
@@ -34,12 +37,22 @@ def next_leg(t: Transition) -> None:
     if plan is not None and t.state.leg < len(plan.legs):
         t.request(Purpose.LEG, plan.legs[t.state.leg])
         return
-    done = Ending(outcome=Outcome.SUCCESS, reason="Every stop was reached.")
-    if t.state.is_down(Link.OPERATOR):
+    done = _done(t)
+    returns = t.state.setup.lands or t.state.setup.mission.returns is not ReturnRule.NONE
+    if t.state.is_down(Link.OPERATOR) or returns:
         t.set(ending=done)
         t.redirect(Goal.RETURN)
         return
     t.finish(done.outcome, done.reason)
+
+
+def _done(t: Transition) -> Ending:
+    """How the mission has gone once the last leg of its plan is flown."""
+    left, achieved = t.left(), t.state.achieved
+    if not left:
+        return Ending(outcome=Outcome.SUCCESS, reason="Every stop was reached.")
+    outcome = Outcome.PARTIAL if achieved else Outcome.NO_SAFE_PLAN
+    return Ending(outcome=outcome, reason=partial_reason(achieved, left))
 
 
 def chosen(t: Transition, decision: FlyPlan) -> None:
@@ -91,8 +104,20 @@ def fulfilled(t: Transition) -> None:
     leg, beliefs = _leg(t), t.beliefs
     if leg.stop.action is Action.LOOK:
         beliefs = replace(beliefs, map=beliefs.map.with_room(leg.site.label, searched=True))
-    t.set(beliefs=replace(beliefs, finished=beliefs.finished | {leg.stop.id}), leg=t.state.leg + 1)
+    begun_s = t.state.clock_s if t.state.task_begun_s is None else t.state.task_begun_s
+    done = Achieved(n=leg.stop.step, text=leg.stop.text or leg.stop.id, at_s=t.state.clock_s - begun_s)
+    t.set(
+        beliefs=replace(beliefs, finished=beliefs.finished | {leg.stop.id}),
+        leg=t.state.leg + 1,
+        achieved=(*t.state.achieved, done),
+    )
     next_leg(t)
+
+
+def done_by_hand(t: Transition) -> None:
+    """A person does what the stop is for: it counts as done, and what is next is thought of after that."""
+    finished = t.beliefs.finished | {_leg(t).stop.id}
+    t.set(beliefs=replace(t.beliefs, finished=finished), plan=None)
 
 
 def watch(t: Transition, event: MapObserved) -> None:
@@ -117,6 +142,10 @@ def go_back(t: Transition, decision: GoBack) -> None:
     """Flies home, or to the place to land at; or does there what was to be done."""
     if t.state.goal is Goal.HOLD:
         t.set(home_s=decision.duration_s)
+        return
+    if_possible = t.state.setup.mission.returns is ReturnRule.IF_POSSIBLE
+    if t.state.goal is Goal.RETURN and _is_over(t) and if_possible and decision.duration_s > t.state.endurance_s():
+        t.end("The battery does not suffice for the way back: it holds where it is.")
         return
     if decision.trajectory is None:
         there(t)
@@ -145,6 +174,10 @@ def no_way_back(t: Transition, decision: RefuseFlight) -> None:
         proceed_back(t)
         return
     t.note("no-way-back", decision.reason)
+    if t.state.setup.lands and t.state.goal is Goal.RETURN:
+        t.redirect(Goal.LAND)
+        proceed_back(t)
+        return
     t.end("It holds where it is.")
 
 
@@ -155,11 +188,16 @@ def proceed_back(t: Transition) -> None:
 
 def there(t: Transition) -> None:
     """At the start, or above the place to land at."""
-    if t.state.goal is Goal.LAND or t.state.lands:
+    if t.state.goal is Goal.LAND or t.state.lands or t.state.setup.lands:
         t.set(goal=Goal.LAND)
         t.descend()
     else:
         t.end("It is back at the start.")
+
+
+def _is_over(t: Transition) -> bool:
+    """Whether the drone returns because its plan is flown."""
+    return t.state.plan is not None and t.state.leg >= len(t.state.plan.legs)
 
 
 def _leg(t: Transition) -> Leg:

@@ -66,6 +66,9 @@ def link_changed(t: Transition, event: LinkChanged) -> None:
     match link:
         case Link.TELEMETRY:
             t.finish(Outcome.VEHICLE_FAILED, event.reason or "The link to the vehicle is lost: it is in its fail-safe.")
+        case Link.CONTROL:
+            t.tell(f"I am not flying any more: {event.reason or 'somebody else has taken over'}.")
+            t.finish(Outcome.ABORTED, event.reason or "Somebody else has taken the vehicle over.")
         case Link.CAMERA if t.state.activity in AWAITING_MAP and t.state.motion is None:
             t.set(activity=Activity.NONE)
             _blind(t, link)
@@ -75,6 +78,12 @@ def link_changed(t: Transition, event: LinkChanged) -> None:
             t.tell("The language model is gone: I go on with words of my own.")
         case _:
             pass
+
+
+def wait_for_hand(t: Transition, what: str) -> None:
+    """A person has to do what the vehicle cannot: holds until they say that it is done."""
+    t.tell(f"{what}, then say 'continue'.")
+    _hold(t, None)
 
 
 def pass_time(t: Transition) -> None:

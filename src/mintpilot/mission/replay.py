@@ -108,6 +108,7 @@ class _Replay:
                 mission=self.started.mission,
                 surveys=self.started.surveys,
                 simulated=self.started.simulated,
+                lands=self.started.lands,
                 briefing=self.started.briefing,
             )
             self._state = initial_state(setup, event.vehicle)

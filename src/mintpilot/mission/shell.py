@@ -5,10 +5,11 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from contextlib import suppress
+from dataclasses import replace
 
 from mintpilot.core.errors import DeviceError
 from mintpilot.core.events import Noticed, Timed
-from mintpilot.core.inputs import Input, Link, LinkChanged, MapObserved, QuestionReworded, Ticked
+from mintpilot.core.inputs import Input, Link, LinkChanged, MapObserved, MotionEnded, QuestionReworded, Ticked
 from mintpilot.core.mission import Outcome, Verdict
 from mintpilot.core.ports import Operator
 from mintpilot.core.query import Question
@@ -20,7 +21,7 @@ from mintpilot.mission.rewording import Rewording
 from mintpilot.mission.state import MissionState
 
 ATTENDED_S = 0.1
-"""While a person is attached, time passes in pieces of at most this, seconds."""
+"""While a person is attached, or beside a real vehicle, time passes in pieces of at most this, seconds."""
 SOON_S = 1e-6
 """Moments that are nearer than this are the same, seconds: clocks round."""
 SPEAKING_S = 1.2
@@ -119,9 +120,13 @@ class Shell:
         if judge is None:
             return believed
         failure = judge.verdict()
-        if failure is not None:
-            return failure
-        return judge.final() if believed.outcome is Outcome.SUCCESS else believed
+        if failure is None:
+            if believed.outcome not in (Outcome.SUCCESS, Outcome.PARTIAL):
+                return believed
+            failure = judge.final()
+            if believed.outcome is Outcome.PARTIAL and failure.outcome in (Outcome.PERSON_MISSED, Outcome.NOT_REACHED):
+                return believed
+        return replace(failure, achieved=believed.achieved, left=believed.left)
 
     def close(self) -> None:
         """Leaves the vehicle holding, and ends the worker."""
@@ -151,7 +156,7 @@ class Shell:
         parts, began, wall_s, before_s = self._parts, time.perf_counter(), self._clock(), self._now_s
         attended = self._attended()
         until_s = min(self._now_s + parts.camera_period_s, state.next_deadline_s())
-        if attended:
+        if attended or parts.lands:
             until_s = min(until_s, self._now_s + ATTENDED_S)
         watching = parts.watch_map and self._moving and not self._braking
         if watching:
@@ -163,7 +168,7 @@ class Shell:
         except DeviceError as error:
             return [self._telemetry_lost(error)]
         self._now_s = vehicle.time_s
-        for event in ended:
+        for event in (event for event in ended if isinstance(event, MotionEnded)):
             self._moving, self._monitor = False, None
             if event.log is not None:
                 parts.map_source.flown(event.log.position_m, parts.parts.mission.limits.radius_m)

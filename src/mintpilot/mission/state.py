@@ -10,8 +10,8 @@ import numpy as np
 from mintpilot.core.briefing import Briefing
 from mintpilot.core.geometry import Floats
 from mintpilot.core.inputs import Link
-from mintpilot.core.mission import Mission, Outcome, Verdict
-from mintpilot.core.plan import Plan
+from mintpilot.core.mission import Achieved, Mission, Outcome, Verdict
+from mintpilot.core.plan import Plan, Stop
 from mintpilot.core.query import Answer, Query, Question
 from mintpilot.core.semantic_map import SemanticMap
 from mintpilot.core.trajectory import VehicleState
@@ -70,6 +70,8 @@ class Setup:
     """True where the first map is made by a survey flight."""
     simulated: bool = False
     """True in a simulator only: baselines may then fly what is not known to be passable."""
+    lands: bool = False
+    """True for a real vehicle: however the mission ends, it returns if it can, and lands."""
     briefing: Briefing | None = None
     """What is shown before take-off and must be answered with an explicit yes; None: it takes off at once."""
 
@@ -146,6 +148,10 @@ class MissionState:
     ready: bool = False
     """True once the vehicle has reported the battery that the task is flown with."""
     plan: Plan | None = None
+    wanted: tuple[Stop, ...] = ()
+    """Stops of the plan that was set out on last, those among them that it leaves undone included."""
+    achieved: tuple[Achieved, ...] = ()
+    """What was done, in order."""
     leg: int = 0
     """Index of the leg that is flown, or prepared."""
     assume_passable: frozenset[str] = frozenset()

@@ -194,6 +194,9 @@ def _motion_ended(t: Transition, event: MotionEnded) -> None:
             surveying.came_back(t)
         case Activity.LEG if t.state.goal is Goal.TASK:
             flying.plan_again(t) if stopped else flying.arrived(t)
+        case Activity.ACT if t.state.goal is Goal.TASK and event.by_hand and not stopped:
+            flying.done_by_hand(t)
+            ordering.wait_for_hand(t, event.by_hand)
         case Activity.ACT if t.state.goal is Goal.TASK:
             flying.plan_again(t) if stopped else t.observe(Activity.ACTED)
         case Activity.HOMEWARD | Activity.TO_LANDING if t.state.goal in (Goal.RETURN, Goal.LAND) and not stopped:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -9,7 +10,7 @@ import numpy as np
 
 from mintpilot.core.geometry import Floats
 from mintpilot.core.inputs import Link
-from mintpilot.core.mission import Outcome, Verdict
+from mintpilot.core.mission import Achieved, Left, Outcome, Verdict, left_of
 from mintpilot.core.motion import FollowTrajectory, Land, PerformAction, TakeOff
 from mintpilot.core.plan import Leg
 from mintpilot.core.trajectory import Trajectory
@@ -163,13 +164,27 @@ class Transition:
     def give_up(self, why: str) -> None:
         """No safe way leads on: back to the start, as far as known free space leads there."""
         self.tell(f"I do not fly on: {why}")
-        self.set(ending=Ending(outcome=Outcome.NO_SAFE_PLAN, reason=why))
+        some = bool(self.state.achieved)
+        reason = f"{partial_reason(self.state.achieved, ())} {why}" if some else why
+        self.set(ending=Ending(outcome=Outcome.PARTIAL if some else Outcome.NO_SAFE_PLAN, reason=reason))
         self.redirect(Goal.RETURN)
+
+    def left(self) -> tuple[Left, ...]:
+        """What is to be done still, as far as a plan has named it, and why it is not."""
+        state = self.state
+        finished = state.beliefs.finished if state.beliefs is not None else frozenset[str]()
+        why = {one.stop.id: left_of(one) for one in state.plan.leaves_undone} if state.plan is not None else {}
+        ended = "the mission ended before it"
+        return tuple(
+            why.get(stop.id) or Left(n=stop.step, text=stop.text or stop.id, reason=ended, resource="ended")
+            for stop in state.wanted
+            if stop.id not in finished
+        )
 
     def finish(self, outcome: Outcome, reason: str) -> None:
         """The mission is over."""
         self.withdraw("the mission is over")
-        verdict = Verdict(outcome=outcome, reason=reason)
+        verdict = Verdict(outcome=outcome, reason=reason, achieved=self.state.achieved, left=self.left())
         self.set(goal=Goal.ENDED, request=None, verdict=verdict)
         self.give(Finish(verdict=verdict))
 
@@ -183,3 +198,10 @@ class Transition:
         ongoing = OngoingMotion(id=move.motion.id, known=known, monitored=move.monitored_m is not None)
         self.set(motion=ongoing, activity=activity)
         self.give(move)
+
+
+def partial_reason(achieved: Sequence[Achieved], left: Sequence[Left]) -> str:
+    """What was done and what was left, with what ran short, in plain sentences."""
+    done = "; ".join(one.text for one in achieved)
+    undone = "; ".join(f"{one.text} ({one.reason})" for one in left)
+    return " ".join([f"Done: {done}." if done else "", f"Left undone: {undone}." if undone else ""]).strip()

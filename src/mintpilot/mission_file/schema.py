@@ -30,6 +30,8 @@ SCHEMA_VERSION = 1
 class VehicleSpec(Spec):
     """What the vehicle can do."""
 
+    model_config = ConfigDict(validate_by_alias=True, validate_by_name=True)
+
     radius_m: Positive = 0.3
     """No part of the vehicle is further from its centre, metres."""
     margin_m: NotNegative = 0.1
@@ -42,6 +44,10 @@ class VehicleSpec(Spec):
     """Of any commanded motion, metres per second squared."""
     endurance_s: Positive | None = None
     """Flight time for the mission, seconds; default: unlimited."""
+    reserve_s: NotNegative = 0.0
+    """Flight time that no plan may use, seconds."""
+    returns: Literal["required", "if-possible", "none"] = Field(default="none", alias="return")
+    """Whether it flies back to the start when its task is done; `required`: every plan leaves battery for that."""
 
 
 StrategyArguments = dict[str, dict[str, bool | int | float | str]]
@@ -106,6 +112,8 @@ class GoalSpec(Spec):
     """A fixed place."""
     dwell_s: NotNegative = 2.0
     """How long the drone stays there, seconds."""
+    price_s: NotNegative | None = None
+    """What leaving it undone costs, seconds of flight; default: `asking.failure_price_s`."""
     truth: Name | None = None
     """With a phrase: id of the object that is really meant, for a scripted operator; never used to plan."""
 
@@ -181,6 +189,8 @@ class MissionFile(Spec):
     """True when everybody who is hurt must be found. Default: as the instruction says."""
     keep_away: Several[KeepAwaySpec] = ()
     """Distances to be kept from people, things or regions, besides those that the instruction names."""
+    people_price_s: NotNegative | None = None
+    """What leaving somebody unseen costs, seconds of flight; default: `asking.failure_price_s`."""
     vehicle: VehicleSpec = VehicleSpec()
     """What the vehicle can do."""
     asking: AskingSpec = AskingSpec()

@@ -5,9 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
+from mintpilot.core.errors import MissionError
 from mintpilot.core.gap import CorrelationGroup
 from mintpilot.core.geometry import Box, Vec3
-from mintpilot.core.mission import AskingSettings, CriticalityRule, Mission, SurveySettings
+from mintpilot.core.mission import AskingSettings, CriticalityRule, Mission, ReturnRule, SurveySettings
 from mintpilot.core.plan import VehicleLimits
 from mintpilot.core.task import Action, Reference, SubGoal, Task
 from mintpilot.mission_file.geodetic_places import georeference_of
@@ -20,16 +21,25 @@ def mission_of(file: MissionFile, *, start_m: Vec3, volume: Box) -> Mission:
     """The mission, free of file formats. Start and volume are the world's."""
     survey = file.survey.model_dump() if file.survey else {}
     resolution = {"resolution_m": survey.pop("resolution_m")} if survey else {}
+    limits = limits_of(file)
+    least_s = 2 * max(start_m[2] - volume.lo_m[2], 0.0) / limits.cruise_mps + limits.reserve_s
+    if limits.endurance_s <= least_s:
+        raise MissionError(
+            f"vehicle endurance_s = {limits.endurance_s:g}: take-off, landing and the reserve alone need {least_s:.1f} "
+            "s; give a larger battery, or a smaller reserve_s"
+        )
     return Mission(
         name=file.name,
         instruction=file.instruction,
         start_m=start_m,
         volume=volume,
-        limits=limits_of(file),
+        limits=limits,
         asking=asking_of(file),
         survey=None if isinstance(file.world, MapWorld) else SurveySettings(**survey),
         prior_passable=file.priors.passable,
         prior_occupied=file.priors.occupied,
+        people_price_s=file.people_price_s,
+        returns=ReturnRule(file.vehicle.returns),
         georeference=None if file.world.georeference is None else georeference_of(file.world.georeference),
         **resolution,
     )
@@ -37,7 +47,7 @@ def mission_of(file: MissionFile, *, start_m: Vec3, volume: Box) -> Mission:
 
 def limits_of(file: MissionFile) -> VehicleLimits:
     """What the vehicle can do."""
-    values = file.vehicle.model_dump()
+    values = file.vehicle.model_dump(exclude={"returns"})
     endurance = values.pop("endurance_s")
     return VehicleLimits(**values, endurance_s=math.inf if endurance is None else endurance)
 
@@ -75,6 +85,7 @@ def task_of(file: MissionFile, *, layer_m: float = 0.0) -> Task | None:
                 action=Action(goal.action),
                 reference=_reference(goal, viewpoints, words, layer_m),
                 dwell_s=goal.dwell_s,
+                price_s=goal.price_s,
             )
             for goal in file.goals
         ),

@@ -10,11 +10,11 @@ import numpy as np
 from mintpilot.core.errors import InfeasibleError, MissionError
 from mintpilot.core.gap import PRESENT, GapKind
 from mintpilot.core.geometry import Floats, Ints
-from mintpilot.core.plan import Leg, Plan, PlanningProblem, Site, Stop
+from mintpilot.core.plan import LeftUndone, Leg, Plan, PlanningProblem, Site, Stop
 from mintpilot.planning.approach import approach_cell
 from mintpilot.planning.legs import Cell3
 from mintpilot.planning.narrow import narrow_passages
-from mintpilot.planning.route import Route, Tour
+from mintpilot.planning.route import Route
 from mintpilot.planning.terrain import Terrain
 
 
@@ -32,12 +32,19 @@ class Itinerary:
     """Gaps that choose sites of ordered stops, sorted."""
     places: Mapping[tuple[str, str], Cell3 | None]
     """Cell at which each (stop id, value of its site) is served; None where it cannot be reached."""
+    home: Cell3 | None
+    """Cell to return to; None where there is none, or nobody wants to."""
 
     @property
     def start(self) -> Cell3:
         """The cell where all routes begin."""
         z, y, x = (int(i) for i in self.terrain.start)
         return (z, y, x)
+
+    @property
+    def edge_s(self) -> float:
+        """Flight along one edge of a cell, seconds."""
+        return self.terrain.frame.resolution_m / self.problem.limits.cruise_mps
 
     def site(self, stop: Stop, values: Mapping[str, str]) -> Site | None:
         """The site of a stop when its target gap has that value; None for a value without a site."""
@@ -50,21 +57,26 @@ class Itinerary:
         chosen = (self.site(stop, values) for stop in self.ordered)
         return tuple((s.position_m, s.reach_m) if s else ("nowhere",) for s in chosen)
 
-    def tour(self, values: Mapping[str, str], visits: Sequence[Stop]) -> Tour | None:
-        """The places to be visited; None where one of them cannot be reached or does not exist."""
-        places = []
-        for stop in (*self.ordered, *visits):
-            site = self.site(stop, values)
-            place = self.places[stop.id, site.value] if site else None
-            if place is None:
-                return None
-            places.append(place)
-        return Tour(start=self.start, places=tuple(places), ordered=len(self.ordered))
+    def place(self, stop: Stop, values: Mapping[str, str]) -> Cell3 | None:
+        """The cell at which a stop is served; None where it cannot be reached or does not exist."""
+        site = self.site(stop, values)
+        return self.places[stop.id, site.value] if site else None
 
-    def plan(self, route: Route, values: Mapping[str, str], visits: Sequence[Stop]) -> Plan:
-        """A route as a plan in metres and seconds, which relies on nothing yet."""
-        stops = (*self.ordered, *visits)
+    def plan(
+        self, route: Route, stops: Sequence[Stop], left: tuple[LeftUndone, ...], values: Mapping[str, str]
+    ) -> Plan:
+        """A route through these stops as a plan in metres and seconds, which relies on nothing yet.
+
+        Args:
+            route: its numbers mean ``stops``.
+            stops: those that are done.
+            left: those that are not, though they are needed or may be.
+            values: of the target gaps.
+        """
         cruise = self.problem.limits.cruise_mps
+        done = {stop.id for stop in stops}
+        looked_at = done | {one.stop.id for one in left}
+        presence = {g.id for g in self.problem.gaps if g.kind is GapKind.PRESENCE and len(g.values) > 1}
         legs: list[Leg] = []
         for number, way in zip(route.order, route.paths, strict=True):
             stop = stops[number]
@@ -82,8 +94,15 @@ class Itinerary:
             cost_s=float(sum(leg.duration_s for leg in legs)),
             relies_on=frozenset(),
             enters=frozenset(g.id for r, g in enumerate(self.terrain.gaps) if route.mask >> r & 1),
-            binds=tuple(sorted(values.items())),
-            skips=frozenset(s.gap for s in self.optional if s not in visits),
+            binds=tuple(sorted((t, v) for t, v in values.items() if any(s.gap == t for s in stops))),
+            skips=frozenset(s.gap for s in self.optional if s.id not in looked_at),
+            leaves_undone=left,
+            undone_s=float(sum(one.stop.price_s for one in left if one.stop.gap not in presence)),
+            stakes=tuple(
+                sorted(
+                    (s.gap, needed_value(s), s.price_s) for s in self.optional if s.id not in done and s.gap in presence
+                )
+            ),
         )
 
 
@@ -91,7 +110,7 @@ def itinerary_of(problem: PlanningProblem, terrain: Terrain) -> Itinerary:
     """Finds the place of every site.
 
     Raises:
-        InfeasibleError: a stop that is not optional can be reached under no hypothesis.
+        InfeasibleError: not one stop can be reached under any hypothesis.
         MissionError: a stop has several sites and no gap to choose among them.
     """
     kinds = {g.id: g.kind for g in problem.gaps}
@@ -104,7 +123,8 @@ def itinerary_of(problem: PlanningProblem, terrain: Terrain) -> Itinerary:
             raise MissionError(
                 f"stop '{stop.id}' has {len(stop.sites)} sites and its gap '{stop.gap}' is not open; give it one site"
             )
-        if all(places[stop.id, site.value] is None for site in stop.sites):
+    if ordered and all(place is None for place in places.values()):
+        for stop in ordered:
             site = stop.sites[0]
             why = narrow_passages(problem, terrain, site) or (
                 f"no flyable cell within {site.reach_m} m of it is connected to the start; map its surroundings, or "
@@ -118,6 +138,7 @@ def itinerary_of(problem: PlanningProblem, terrain: Terrain) -> Itinerary:
         optional=tuple(sorted((s for s in problem.stops if s.optional), key=lambda s: s.id)),
         targets=tuple(sorted({s.gap for s in ordered if kinds.get(s.gap, GapKind.PRESENCE) is not GapKind.PRESENCE})),
         places=places,
+        home=None if problem.home_m is None else _cell(approach_cell(terrain, Site(position_m=problem.home_m))),
     )
 
 

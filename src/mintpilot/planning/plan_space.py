@@ -7,13 +7,16 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from mintpilot.core.gap import BLOCKED, PASSABLE, Assumptions
-from mintpilot.core.plan import Plan, PlanningProblem, Stop
+from mintpilot.core.plan import LeftUndone, Plan, PlanningProblem, Shortage, Stop
 from mintpilot.core.ports import PlanSpace
-from mintpilot.core.tolerances import TOLERANCE
 from mintpilot.planning.itinerary import itinerary_of, needed_value
 from mintpilot.planning.legs import LegTable, PathSearch
-from mintpilot.planning.route import Route, best_route
+from mintpilot.planning.route import Route
+from mintpilot.planning.selection import Selection, Selector
 from mintpilot.planning.terrain import Terrain
+
+NOWHERE = ""
+"""Value of a target gap that is not known, for plans that must not guess it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,9 +28,9 @@ class _Case:
     uncertain: int
     """Those still open: at equal cost, fewer of them are entered."""
     visits: tuple[Stop, ...]
-    """Optional stops to be visited."""
+    """Optional stops that may be needed, each with its chance under what is assumed."""
     values: tuple[tuple[str, tuple[str, ...]], ...]
-    """For each target gap, the values to choose among."""
+    """For each target gap, the values to choose among; ``NOWHERE`` alone: its stops are left undone."""
 
 
 class GridPlanSpace(PlanSpace):
@@ -42,7 +45,7 @@ class GridPlanSpace(PlanSpace):
         search: finds decision lists between cells of that grid.
 
     Raises:
-        InfeasibleError: a stop that is not optional can be reached under no hypothesis.
+        InfeasibleError: not one stop can be reached under any hypothesis.
         MissionError: a stop has several sites and no gap to choose among them.
     """
 
@@ -50,6 +53,7 @@ class GridPlanSpace(PlanSpace):
         self.itinerary = itinerary_of(problem, terrain)
         self._search = search
         self._legs = LegTable(search)
+        self._selector = Selector(self.itinerary, self._legs)
         self._gaps = {g.id: g for g in problem.gaps}
         self._made: dict[_Case, Plan | None] = {}
 
@@ -61,7 +65,7 @@ class GridPlanSpace(PlanSpace):
     @property
     def notes(self) -> tuple[str, ...]:
         """What a bound on the work left out, in plain sentences; empty when every plan is the best one."""
-        notes = set()
+        notes = set(self._selector.notes)
         for cut in self._legs.incomplete:
             if cut.left_out:
                 names = ", ".join(self.itinerary.terrain.gaps[r].id for r in cut.left_out)
@@ -71,32 +75,62 @@ class GridPlanSpace(PlanSpace):
         return tuple(sorted(notes))
 
     def optimistic(self, given: Assumptions) -> Plan | None:
-        """The cheapest plan with every open gap at its most favourable value; None where there is none."""
+        """The cheapest plan with every open gap at its most favourable value; None where not one stop can be done.
+
+        A room that may be empty is taken for empty, unless the battery does not suffice for it anyway: then it is left
+        undone, and nothing relies on what is in it. Where only such rooms could be visited the plan has no legs.
+        """
+        blocked = self._regions(given, lambda values: PASSABLE not in values)
+        visits = tuple(self._weighed(s, given) for s in self.itinerary.optional if self._needed(s, given, blocked))
         case = _Case(
-            self._regions(given, lambda values: PASSABLE not in values),
+            blocked,
             self._regions(given, lambda values: len(values) > 1),
-            tuple(s for s in self.itinerary.optional if set(self._possible(s, given)) <= {needed_value(s)}),
+            visits,
             tuple((t, self._values(t, given)) for t in self.itinerary.targets),
         )
         plan = self._plan(case)
+        if plan is None:
+            plan = self._nothing_yet(visits, given)
         return None if plan is None else replace(plan, relies_on=self._relied_on(plan, given))
 
     def cautious(self, given: Assumptions) -> Plan | None:
-        """The cheapest plan that succeeds whatever the open gaps turn out to be; None where there is none.
+        """The best plan that can be flown whatever the open gaps turn out to be; None where not one stop can be done.
 
-        It keeps out of every region that may be blocked and visits every room that may be occupied. Target gaps must
-        be settled, or lead to the same places whatever their value.
+        It keeps out of every region that may be blocked, visits every room that may be occupied as far as the battery
+        suffices, and leaves undone what hangs on a target gap that is not settled.
         """
-        values = tuple((t, self._values(t, given)) for t in self.itinerary.targets)
-        if any(self._matters(target, given) for target in self.itinerary.targets):
-            return None
         case = _Case(
             self._regions(given, lambda values: BLOCKED in values or not values),
             0,
-            tuple(s for s in self.itinerary.optional if needed_value(s) in self._possible(s, given)),
-            tuple((target, possible[:1]) for target, possible in values),
+            tuple(
+                self._weighed(s, given) for s in self.itinerary.optional if needed_value(s) in self._possible(s, given)
+            ),
+            tuple(
+                (t, (NOWHERE,) if self._matters(t, given) else self._values(t, given)[:1])
+                for t in self.itinerary.targets
+            ),
         )
         return self._plan(case)
+
+    def _needed(self, stop: Stop, given: Assumptions, blocked: int) -> bool:
+        """Whether an optional stop is to be visited even if all turns out well, or cannot be for want of battery."""
+        possible = set(self._possible(stop, given))
+        if possible <= {needed_value(stop)}:
+            return True
+        return needed_value(stop) in possible and not self._selector.fits_alone(stop, blocked)
+
+    def _weighed(self, stop: Stop, given: Assumptions) -> Stop:
+        """The stop with its chance under what is assumed: that as believed while its gap is open, else certain."""
+        return replace(stop, chance=1.0) if len(self._possible(stop, given)) == 1 else stop
+
+    def _nothing_yet(self, visits: tuple[Stop, ...], given: Assumptions) -> Plan | None:
+        """The plan without legs that waits for somebody to be in a room; None where no room is left either."""
+        visited = {stop.id for stop in visits}
+        if all(s.id in visited or needed_value(s) not in self._possible(s, given) for s in self.itinerary.optional):
+            return None
+        wanted = (*self.itinerary.ordered, *visits)
+        left = tuple(LeftUndone(stop=stop, resource=Shortage.BATTERY) for stop in wanted)
+        return self.itinerary.plan(Route(cost=0.0, mask=0, order=(), paths=()), (), left, {})
 
     def _values(self, gap_id: str, given: Assumptions) -> tuple[str, ...]:
         """Possible values, sorted, so that their order in the gap never matters."""
@@ -127,16 +161,20 @@ class GridPlanSpace(PlanSpace):
     def _best(self, case: _Case) -> Plan | None:
         """The best plan over all choices of values, within the vehicle's endurance."""
         names = [target for target, _ in case.values]
-        best: tuple[tuple[object, ...], Route, dict[str, str]] | None = None
+        best: tuple[tuple[object, ...], Selection, dict[str, str]] | None = None
         for choice in itertools.product(*(values for _, values in case.values)):
             values = dict(zip(names, choice, strict=True))
-            tour = self.itinerary.tour(values, case.visits)
-            route = best_route(self._legs, tour, case.blocked, case.uncertain) if tour else None
-            if route is not None:
-                rank = (*route.rank(case.uncertain), choice)
+            found = self._selector.select(values, case.visits, case.blocked, case.uncertain)
+            if found is not None:
+                lost_s = found.left_s + sum(stop.dwell_s for stop in found.stops)
+                rank = (
+                    round(found.route.cost + lost_s / self.itinerary.edge_s, 9),
+                    *found.route.rank(case.uncertain),
+                    choice,
+                )
                 if best is None or rank < best[0]:
-                    best = (rank, route, values)
+                    best = (rank, found, values)
         if best is None:
             return None
-        plan = self.itinerary.plan(best[1], best[2], case.visits)
-        return plan if plan.cost_s <= self.itinerary.problem.limits.endurance_s + TOLERANCE else None
+        _, found, values = best
+        return self.itinerary.plan(found.route, found.stops, found.left, values)

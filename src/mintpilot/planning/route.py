@@ -47,8 +47,12 @@ class Tour:
     """The first so many stops keep their order; the rest may be put anywhere."""
 
 
-def best_route(legs: LegTable, tour: Tour, blocked: int, uncertain: int) -> Route | None:
+def best_route(
+    legs: LegTable, tour: Tour, blocked: int, uncertain: int, most: Callable[[Cell3], float] | None = None
+) -> Route | None:
     """The cheapest route that enters no blocked region; among equals the one that enters the fewest uncertain ones.
+
+    With ``most``, a route that ends at a place costs no more than that, edges; dearer ones do not exist.
 
     Exact: the state is (ordered stops done, others done, place). As costs add up, a cheapest route consists of
     cheapest ones to each state; of those all are kept that differ in the uncertain regions entered.
@@ -67,7 +71,12 @@ def best_route(legs: LegTable, tour: Tour, blocked: int, uncertain: int) -> Rout
                     for way in paths:
                         _offer(coming.setdefault(state, []), _longer(route, way, state[2]), uncertain)
         layer = {state: routes for state, routes in coming.items() if routes}
-    ends = [route for routes in layer.values() for route in routes]
+    ends = [
+        route
+        for (_, _, last), routes in layer.items()
+        for route in routes
+        if most is None or route.cost <= most(tour.start if last < 0 else tour.places[last]) + TIE
+    ]
     return min(ends, key=lambda r: r.rank(uncertain), default=None)
 
 

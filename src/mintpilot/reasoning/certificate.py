@@ -11,7 +11,7 @@ from mintpilot.core.mission import AskingSettings
 from mintpilot.core.plan import Plan
 from mintpilot.core.tolerances import TOLERANCE
 from mintpilot.core.tree import Certificate, Mint, StopReason
-from mintpilot.reasoning.classes import cheapest_under, class_entropy_bits
+from mintpilot.reasoning.classes import cheapest_under, class_entropy_bits, cost_under
 from mintpilot.reasoning.situation import may_fail, succeeds
 
 _BECAUSE: Final = {
@@ -37,7 +37,17 @@ def bound_s(plan: Plan | None, mint: Mint, belief: Belief, settings: AskingSetti
         return 0.0 if np.isinf(lowest).all() else float("inf")
     if may_fail(plan, belief, settings.floor) or not succeeds(plan, mint.belief).ravel()[mint.support].all():
         return float("inf")
-    return float(max(0.0, (plan.cost_s - lowest[np.isfinite(lowest)]).max(initial=0.0)))
+    if _may_be_missed(plan, mint, belief, settings):
+        return float("inf")
+    cost = cost_under(plan, mint).ravel()[mint.support]
+    return float(max(0.0, (cost - lowest)[np.isfinite(lowest)].max(initial=0.0)))
+
+
+def _may_be_missed(plan: Plan, mint: Mint, belief: Belief, settings: AskingSettings) -> bool:
+    """Whether somebody may be in a room that the plan takes for empty, and the tree does not show what that costs."""
+    known = {g.id for g in belief.gaps} - {g.id for g in mint.belief.gaps}
+    rooms = [(gap, value) for gap, value, _ in plan.stakes if gap in plan.skips and gap in known]
+    return any(belief.probability_of(gap, value) > settings.floor for gap, value in rooms)
 
 
 def mass_outside(plan: Plan | None, mint: Mint, settings: AskingSettings) -> float:
@@ -47,7 +57,8 @@ def mass_outside(plan: Plan | None, mint: Mint, settings: AskingSettings) -> flo
     if plan is None:
         return float(probability[np.isfinite(lowest)].sum())
     fine = succeeds(plan, mint.belief).ravel()[mint.support]
-    near = np.isinf(lowest) | (plan.cost_s - lowest <= settings.delta_c_s + TOLERANCE)
+    cost = cost_under(plan, mint).ravel()[mint.support]
+    near = np.isinf(lowest) | (cost - lowest <= settings.delta_c_s + TOLERANCE)
     return float(max(0.0, 1.0 - probability[fine & near].sum() / max(probability.sum(), TOLERANCE)))
 
 
@@ -85,4 +96,5 @@ def _consequence(plan: Plan | None, bound: float, outside: float, delta_c_s: flo
         return f"The plan of {plan.cost_s:.1f} s is the best that is safe; {beyond}."
     if bound > delta_c_s + TOLERANCE:
         return f"The plan of {plan.cost_s:.1f} s is at most {bound:.1f} s dearer than the best; {beyond}."
-    return f"No further answer would change the flight of {plan.cost_s:.1f} s by more than {bound:.1f} s."
+    undone = f" It leaves undone: {len(plan.leaves_undone)}." if plan.leaves_undone else ""
+    return f"No further answer would change the flight of {plan.cost_s:.1f} s by more than {bound:.1f} s.{undone}"

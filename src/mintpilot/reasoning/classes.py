@@ -15,7 +15,7 @@ from mintpilot.core.plan import Plan
 from mintpilot.core.tolerances import DECIMALS
 from mintpilot.core.tree import LeafReason, Mint, Node, PlanClass
 from mintpilot.reasoning.entropy import entropy_bits
-from mintpilot.reasoning.tables import box, joint_over
+from mintpilot.reasoning.tables import box, joint_over, mask_of
 
 
 @dataclass(slots=True, kw_only=True, eq=False)
@@ -89,17 +89,53 @@ def cheapest_under(mint: Mint) -> Floats:
     lowest = np.full(mint.belief.probability.shape, np.inf)
     for leaf in leaves_of(mint.root):
         if leaf.optimistic is not None:
-            lowest[np.ix_(*box(mint.belief, leaf.given))] = leaf.optimistic.cost_s
+            cells = np.ix_(*box(mint.belief, leaf.given))
+            lowest[cells] = cost_under(leaf.optimistic, mint, surely=True)[cells]
     return lowest
 
 
+def cost_under(plan: Plan, mint: Mint, *, surely: bool = False) -> Floats:
+    """Seconds of flight and prices of what a plan leaves undone (method, section 9), under each joint hypothesis.
+
+    The shape is that of ``mint.belief.probability``. Rooms of which the tree's axes say nothing count where the tree
+    takes somebody to be there for certain; elsewhere no plan of the tree differs in them.
+
+    Args:
+        plan: need not succeed; where it does not, its cost is another matter.
+        mint: the tree.
+        surely: leaves out the rooms that the plan takes for empty: no plan can undercut what is left.
+    """
+    given = dict(mint.root.given.items)
+    axes = {gap.id for gap in mint.belief.gaps}
+    cost = np.full(mint.belief.probability.shape, plan.cost_s + plan.undone_s)
+    for gap, value, price_s in plan.stakes:
+        if surely and gap in plan.skips:
+            continue
+        if gap in axes:
+            cost += price_s * mask_of(mint.belief, {gap: (value,)})
+        elif given.get(gap) == frozenset({value}):
+            cost += price_s
+    return cost
+
+
+def least_cost_s(plan: Plan, given: Assumptions) -> float:
+    """Flight and prices of a plan where all that is open turns out well, seconds."""
+    possible = dict(given.items)
+    stakes = (price for gap, value, price in plan.stakes if possible.get(gap) == frozenset({value}))
+    return plan.cost_s + plan.undone_s + sum(stakes)
+
+
 def demands(plan: Plan) -> dict[str, str]:
-    """What must hold for the plan to succeed: gap id → the value that it needs."""
-    return {
-        **dict.fromkeys(plan.enters, PASSABLE),
-        **dict(plan.binds),
-        **dict.fromkeys(plan.skips, ABSENT),
-    }
+    """What must hold for the plan to be flown as it is meant: gap id → the value that it needs.
+
+    A room that it skips is none of this: somebody who is there after all costs the price of the stop.
+    """
+    return {**dict.fromkeys(plan.enters, PASSABLE), **dict(plan.binds)}
+
+
+def assumes(plan: Plan) -> dict[str, str]:
+    """All that the plan takes for granted: what it demands, and that the rooms which it skips are empty."""
+    return {**demands(plan), **dict.fromkeys(plan.skips, ABSENT)}
 
 
 def _with_demanded(
@@ -112,7 +148,7 @@ def _with_demanded(
     """
     chosen, gaps = set(axes), {g.id: g for g in belief.gaps}
     cells = math.prod(len(gaps[name].values) for name in chosen)
-    for name in sorted({d for leaf in leaves if leaf.plan for d in demands(leaf.plan)} & set(gaps) - chosen):
+    for name in sorted({d for leaf in leaves if leaf.plan for d in assumes(leaf.plan)} & set(gaps) - chosen):
         gap = gaps[name]
         if gap.kind is not GapKind.TARGET and root.given.is_open(gap) and cells * len(gap.values) <= settings.max_joint:
             chosen.add(name)
@@ -127,10 +163,11 @@ def _classes(mass: list[float], leaves: list[NodeDraft]) -> tuple[tuple[PlanClas
         members.setdefault(leaf.plan.signature if leaf.plan else "", []).append(index)
     made = []
     for key, indices in members.items():
-        plan = leaves[indices[0]].plan
+        # Leaves that fly the same way may differ in what they leave undone: nothing of it is to be forgotten.
+        plan = max((leaves[i].plan for i in indices), key=lambda p: len(p.leaves_undone) if p else 0)
         probability = float(sum(mass[i] for i in indices))
         given = tuple(leaves[i].given for i in indices)
-        cost = plan.cost_s if plan else float("inf")
+        cost = plan.cost_s + plan.undone_s if plan else float("inf")
         # Rounding must not decide the order of equally likely classes.
         made.append(
             (-round(probability, DECIMALS), cost, key, PlanClass(plan=plan, probability=probability, given=given))

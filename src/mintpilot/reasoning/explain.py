@@ -13,7 +13,7 @@ from mintpilot.core.plan import Plan
 from mintpilot.core.ports import ImpactMetric, PlanSpace
 from mintpilot.core.tolerances import DECIMALS, TOLERANCE
 from mintpilot.core.tree import GapExplanation, Mint, Node
-from mintpilot.reasoning.classes import class_entropy_bits, nodes_of
+from mintpilot.reasoning.classes import class_entropy_bits, least_cost_s, nodes_of
 from mintpilot.reasoning.entropy import entropy_bits
 from mintpilot.reasoning.metrics import expected_regret_s
 from mintpilot.reasoning.situation import regret_matrix
@@ -78,11 +78,13 @@ def _branching_node(root: Node, gap_id: str) -> Node | None:
 
 def _extremes(space: PlanSpace, given: Assumptions, gap: KnowledgeGap) -> tuple[Plan | None, Plan | None]:
     """The plans under the gap's best and worst possible value; None where that value leaves nothing to fly."""
-    plans = [space.optimistic(given.assume(gap.id, (value,))) for value in given.possible(gap)]
-    found = sorted((p for p in plans if p is not None), key=lambda p: (p.cost_s, p.signature))
+    cases = [given.assume(gap.id, (value,)) for value in given.possible(gap)]
+    made = [(space.optimistic(case), case) for case in cases]
+    found = [(least_cost_s(plan, case), plan.signature, plan) for plan, case in made if plan is not None]
     if not found:
         return None, None
-    return found[0], found[-1] if len(found) == len(plans) else None
+    found.sort(key=lambda item: item[:2])
+    return found[0][2], found[-1][2] if len(found) == len(cases) else None
 
 
 def _worth(mint: Mint, regret_s: Floats, gap_id: str) -> tuple[float, float]:
@@ -121,6 +123,10 @@ def _figures(gap: KnowledgeGap, best: Plan | None, worst: Plan | None, divergenc
         return ""
     if worst is None:
         figures = f"the best plan takes {best.cost_s:.1f} s one way, and there is none the other way"
+    elif len(worst.leaves_undone) > len(best.leaves_undone):
+        more = len(worst.leaves_undone) - len(best.leaves_undone)
+        stops = "a stop" if more == 1 else f"{more} stops"
+        figures = f"the best plan takes {best.cost_s:.1f} s one way; the other way it leaves {stops} more undone"
     else:
         extra = worst.cost_s - best.cost_s
         apart = "" if divergence_m is None else f", {divergence_m:.1f} m apart"

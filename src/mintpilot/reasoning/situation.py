@@ -9,7 +9,7 @@ from mintpilot.core.geometry import Bools, Floats
 from mintpilot.core.mission import AskingSettings
 from mintpilot.core.plan import Plan
 from mintpilot.core.tree import Mint
-from mintpilot.reasoning.classes import cheapest_under, demands, nodes_of
+from mintpilot.reasoning.classes import assumes, cheapest_under, cost_under, demands, nodes_of
 from mintpilot.reasoning.tables import mask_of
 
 MAX_CELLS = 1 << 22
@@ -45,8 +45,9 @@ def plans_of(mint: Mint) -> tuple[Plan | None, ...]:
 def regret_matrix(mint: Mint, settings: AskingSettings) -> Floats:
     """Seconds lost by flying each plan under each joint hypothesis, instead of the best one.
 
-    Shape (rows, n): `plans_of` by the hypotheses of `Mint.support`. Where a plan would fail it loses
-    ``settings.failure_price_s``; so does staying on the ground where something could have been flown.
+    Shape (rows, n): `plans_of` by the hypotheses of `Mint.support`. What a plan leaves undone counts with its price
+    (method, section 9). Where a plan would fail it loses ``settings.failure_price_s``, and no less than any plan that
+    does not; so does staying on the ground where something could have been flown.
     """
     support, plans = mint.support, plans_of(mint)
     rows = min(len(plans), max(1, MAX_CELLS // max(1, support.size)))
@@ -56,10 +57,12 @@ def regret_matrix(mint: Mint, settings: AskingSettings) -> Floats:
     for number, plan in enumerate(plans[:rows]):
         if plan is not None:
             fine = _surely_succeeds(number, plan, mint).ravel()[support]
-            cost[number] = np.where(fine, plan.cost_s, np.inf)
+            cost[number] = np.where(fine, cost_under(plan, mint).ravel()[support], np.inf)
     # Where nothing can be flown, only staying on the ground loses nothing.
     hopeless = np.isinf(best)
-    lost: Floats = np.where(np.isinf(cost), settings.failure_price_s, cost - np.where(hopeless, 0.0, best))
+    lost: Floats = np.maximum(cost - np.where(hopeless, 0.0, best), 0.0)
+    dearest = np.where(np.isfinite(lost), lost, 0.0).max(axis=0, initial=settings.failure_price_s)
+    lost = np.where(np.isinf(cost), dearest, lost)
     for number, plan in enumerate(plans[:rows]):
         if plan is None:
             lost[number, hopeless] = 0.0
@@ -73,7 +76,7 @@ def _surely_succeeds(number: int, plan: Plan, mint: Mint) -> Bools:
     that is under its own hypotheses only.
     """
     axes, given = {g.id for g in mint.belief.gaps}, dict(mint.root.given.items)
-    hidden = any(name not in axes and given.get(name) != frozenset({value}) for name, value in demands(plan).items())
+    hidden = any(name not in axes and given.get(name) != frozenset({value}) for name, value in assumes(plan).items())
     fine = succeeds(plan, mint.belief)
     if hidden or any(g.kind is GapKind.VALUE for g in mint.belief.gaps):
         fine &= mint.class_of == number

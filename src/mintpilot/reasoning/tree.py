@@ -11,6 +11,7 @@ tree branches on, never with all gaps: of thirty, those on which no plan relies 
 from __future__ import annotations
 
 import heapq
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from mintpilot.core.errors import MissionError
@@ -20,7 +21,7 @@ from mintpilot.core.plan import Plan
 from mintpilot.core.ports import ImpactMetric, PlanSpace
 from mintpilot.core.tolerances import DECIMALS, TOLERANCE
 from mintpilot.core.tree import LeafReason, Mint
-from mintpilot.reasoning.classes import NodeDraft, finish
+from mintpilot.reasoning.classes import NodeDraft, finish, least_cost_s
 from mintpilot.reasoning.entropy import entropy_bits
 from mintpilot.reasoning.support import clear_targets, conditional, narrow
 
@@ -99,7 +100,10 @@ class _Growth:
         if pair not in self.distances:
             self.distances[pair] = self.metric.divergence(best.path_m, sure.path_m)
         node.divergence_m = self.distances[pair]
-        if sure.cost_s - best.cost_s > self.settings.delta_c_s + TOLERANCE:
+        if (
+            _dearest_s(sure, node.given, self.gaps) - least_cost_s(best, node.given)
+            > self.settings.delta_c_s + TOLERANCE
+        ):
             return False
         if self.settings.rule is CriticalityRule.REGRET:
             return True
@@ -145,3 +149,9 @@ class _Growth:
 def _leaf(node: NodeDraft, reason: LeafReason, plan: Plan | None) -> list[NodeDraft]:
     node.leaf, node.plan = reason, plan
     return []
+
+
+def _dearest_s(plan: Plan, given: Assumptions, gaps: Mapping[str, KnowledgeGap]) -> float:
+    """Cost of a plan where all that is open turns out badly: flight, and all that it may leave undone, seconds."""
+    stakes = (p for gap, value, p in plan.stakes if gap not in gaps or value in given.possible(gaps[gap]))
+    return plan.cost_s + plan.undone_s + sum(stakes)

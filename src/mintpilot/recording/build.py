@@ -15,16 +15,18 @@ from pydantic import JsonValue
 
 from mintpilot.core.events import Asked, Deliberated, LegFlown, PlanChosen
 from mintpilot.core.gap import GapKind, KnowledgeGap
-from mintpilot.core.mission import Outcome
+from mintpilot.core.mission import Outcome, Verdict
 from mintpilot.core.semantic_map import SemanticMap
 from mintpilot.core.trajectory import FlightEnd
 from mintpilot.core.tree import Certificate, GapExplanation
 from mintpilot.recording.history import History
 from mintpilot.recording.record import (
+    AchievedRecord,
     CertificateRecord,
     CutRecord,
     FlightRecord,
     GapRecord,
+    LeftRecord,
     MissionRecord,
     NoticeRecord,
     OrderRecord,
@@ -74,6 +76,8 @@ def build_record(history: History, *, run_dir: str = "", unfinished: str = "") -
         tree=tree_record(mint, history.gaps, told) if mint else None,
         plan_classes=class_records(mint, history.gaps, told) if mint else (),
         certificate=_certificate(certificate) if certificate else None,
+        achieved=_achieved(ended.verdict) if ended else (),
+        left=_left(ended.verdict) if ended else (),
         flight=flight,
         survey=flight_record(survey_legs) if survey_legs else None,
         seen=_seen(history.map) if history.map else (),
@@ -97,6 +101,24 @@ def versions() -> dict[str, str]:
         except metadata.PackageNotFoundError:
             continue
     return found
+
+
+def _achieved(verdict: Verdict) -> tuple[AchievedRecord, ...]:
+    return tuple(AchievedRecord(n=one.n, text=one.text, at_s=one.at_s) for one in verdict.achieved)
+
+
+def _left(verdict: Verdict) -> tuple[LeftRecord, ...]:
+    return tuple(
+        LeftRecord(
+            n=one.n,
+            text=one.text,
+            reason=one.reason,
+            resource=one.resource,
+            needed=one.needed_s,
+            available=one.available_s,
+        )
+        for one in verdict.left
+    )
 
 
 def flight_record(legs: Sequence[LegFlown]) -> FlightRecord:

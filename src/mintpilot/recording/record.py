@@ -247,6 +247,32 @@ class NoticeRecord(Part):
     text: str
 
 
+class AchievedRecord(Part):
+    """A stop that was done."""
+
+    n: int
+    """Number of its step."""
+    text: str
+    at_s: float
+    """When, seconds since the task began."""
+
+
+class LeftRecord(Part):
+    """A stop that was not done."""
+
+    n: int
+    """Number of its step."""
+    text: str
+    reason: str
+    """Why, with the figures."""
+    resource: str
+    """What ran short: ``battery``, ``way``, ``thing``, ``answer``, ``price``; ``ended``: the mission ended before."""
+    needed: Figure
+    """Seconds that it would have taken, where that is what counts."""
+    available: Figure
+    """Seconds that there were."""
+
+
 class MissionRecord(Part):
     """Everything that is kept of one mission."""
 
@@ -273,6 +299,10 @@ class MissionRecord(Part):
     tree: TreeRecord | None
     plan_classes: tuple[PlanClassRecord, ...]
     certificate: CertificateRecord | None
+    achieved: tuple[AchievedRecord, ...] = ()
+    """What was done, in order."""
+    left: tuple[LeftRecord, ...] = ()
+    """What was to be done and was not."""
     flight: FlightRecord
     survey: FlightRecord | None
     seen: tuple[SeenRecord, ...]

@@ -91,7 +91,7 @@ def report_html(record: MissionRecord, folder: Path) -> str:
     )
 
 
-_STOPPED = {Outcome.ABORTED, Outcome.NO_SAFE_PLAN}
+_STOPPED = {Outcome.ABORTED, Outcome.NO_SAFE_PLAN, Outcome.PARTIAL}
 """Endings that are nobody's failure."""
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from mintpilot.core.query import Reply
-from mintpilot.recording.record import Figure, FlightRecord, MissionRecord, Part
+from mintpilot.recording.record import AchievedRecord, Figure, FlightRecord, LeftRecord, MissionRecord, Part
 
 
 class QuestionSummary(Part):
@@ -40,6 +40,8 @@ class RunSummary(Part):
     """``success``, or the reason of failure by its stable name, e.g. ``collision``."""
     questions: tuple[QuestionSummary, ...]
     gaps: tuple[GapSummary, ...]
+    achieved: tuple[AchievedRecord, ...]
+    left: tuple[LeftRecord, ...]
     flight: FlightRecord
     timings_s: dict[str, float]
     seed: int | None
@@ -58,6 +60,8 @@ def summary(record: MissionRecord) -> RunSummary:
             for q in record.questions
         ),
         gaps=tuple(GapSummary(**{name: getattr(g, name) for name in GapSummary.model_fields}) for g in record.gaps),
+        achieved=record.achieved,
+        left=record.left,
         flight=record.flight,
         timings_s=record.timings_s,
         seed=record.seed,

@@ -32,7 +32,8 @@ def print_report(record: MissionRecord, console: Console) -> None:
 
 
 def _head(record: MissionRecord) -> RenderableType:
-    style = "bold green" if record.outcome is Outcome.SUCCESS else "bold red"
+    styles = {Outcome.SUCCESS: "bold green", Outcome.PARTIAL: "bold yellow"}
+    style = styles.get(record.outcome, "bold red")
     lines = [Text(OUTCOME_WORDS[record.outcome].upper(), style), _plain(record.reason)]
     if record.instruction:
         lines.append(_plain(f"Order: {record.instruction}", "dim"))
@@ -116,6 +117,8 @@ def _flown(record: MissionRecord) -> RenderableType:
     lines: list[RenderableType] = [table]
     if timings:
         lines.append(Text(f"Computing and waiting: {timings}", "dim"))
+    lines.extend(_plain(f"done after {number(one.at_s, 's')}: {one.text}") for one in record.achieved)
+    lines.extend(_plain(f"left undone: {one.text} ({one.reason})", "yellow") for one in record.left)
     lines.extend(_plain(f"! {notice.text}", "yellow") for notice in record.notices)
     if record.run_dir:
         lines.append(Text(f"Report: {printable(record.run_dir)}/report.html", "bold", overflow="fold"))

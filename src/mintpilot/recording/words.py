@@ -20,6 +20,7 @@ LEAF_WORDS: dict[LeafReason, str] = {
 
 OUTCOME_WORDS: dict[Outcome, str] = {
     Outcome.SUCCESS: "Mission accomplished",
+    Outcome.PARTIAL: "Done in part: some stops were left undone",
     Outcome.COLLISION: "Failed: the drone touched something",
     Outcome.TOXIC_SMOKE: "Failed: the drone flew into toxic smoke",
     Outcome.ENDURANCE: "Failed: the flight time ran out",

@@ -118,6 +118,11 @@ class SceneJudge(Judge):
         if box_distance(target.extent_m, position_m) <= self._rules.pick_reach_m:
             self._goals_left.pop(0)
 
+    def people(self) -> tuple[int, int]:
+        """(how many of the people who must be found were found, how many there are)."""
+        wanted = self._wanted_people()
+        return sum(name in self._found for name in wanted), len(wanted)
+
     def verdict(self) -> Verdict | None:
         """The failure that has happened, if any."""
         return self._failure

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mintpilot.core.errors import DeviceError
-from mintpilot.core.geometry import Floats
+from mintpilot.core.geometry import Floats, Vec3
 from mintpilot.core.inputs import MotionEnded
 from mintpilot.core.mission import Verdict
 from mintpilot.core.motion import FollowTrajectory, Land, Motion, MotionEnd, PerformAction, TakeOff
@@ -144,6 +144,19 @@ class KinematicSimulator(Vehicle, Judge):
         self._velocity = np.zeros(3)
         self._flown = None
 
+    def carry(self, time_s: float, position_m: Vec3, velocity_mps: Vec3) -> None:
+        """Somebody else flies it: it is there now, having come straight from where it was. That way is judged."""
+        way = np.array([self._position, position_m], float)
+        times = np.array([self._time_s, max(time_s, self._time_s)])
+        failure = self._judge.first_failure(times, way)
+        touch = self._obstacles.first_touch(way, times)
+        if touch is not None:
+            self._judge.fail(collision(f"'{touch[1]}'"))
+        elif failure is not None:
+            self._judge.fail(failure[1])
+        self._time_s, self._position = float(times[1]), way[1]
+        self._velocity = np.asarray(velocity_mps, float)
+
     def verdict(self) -> Verdict | None:
         """The failure that has happened, if any."""
         return self._judge.verdict()
@@ -151,6 +164,10 @@ class KinematicSimulator(Vehicle, Judge):
     def final(self) -> Verdict:
         """The verdict at the end."""
         return self._judge.final()
+
+    def people(self) -> tuple[int, int]:
+        """(people found who must be, people who must be found)."""
+        return self._judge.people()
 
     def _begin(self, motion: Motion, way: Reference) -> None:
         if self._judge.verdict() is not None:

@@ -21,6 +21,7 @@ def scene_of_map(
     goal_objects: tuple[str, ...] = (),
     places_m: Mapping[str, Vec3] | None = None,
     must_be_found: Collection[str] = (),
+    occupants_sought: bool = True,
 ) -> Scene:
     """What the map says is there: walls of its occupied cells, and regions with their declared truth.
 
@@ -37,6 +38,7 @@ def scene_of_map(
             known.
         places_m: id → those of them that are bare places.
         must_be_found: ids of objects that are people whom the mission has to find.
+        occupants_sought: whether people in rooms must be found.
     """
     frame = map.frame
     walls = tuple(
@@ -56,7 +58,9 @@ def scene_of_map(
     rooms = []
     for room in map.rooms:
         occupied = room.occupied is Knowledge.YES or truths.get(room.id) == PRESENT
-        occupant = Person(id=f"{room.id}/person", position_m=room.door_m.centre_m) if occupied else None
+        occupant = None
+        if occupied:
+            occupant = Person(id=f"{room.id}/person", position_m=room.door_m.centre_m, must_be_found=occupants_sought)
         rooms.append(
             ClosedRoom(
                 id=room.id,

@@ -193,6 +193,10 @@ class MujocoSimulator(Vehicle, Camera, Judge):
         """The verdict at the end."""
         return self._judge.final()
 
+    def people(self) -> tuple[int, int]:
+        """(people found who must be, people who must be found)."""
+        return self._judge.people()
+
     def close(self) -> None:
         """Frees the drawing context. Safe to call twice."""
         self._closed = True

@@ -14,7 +14,7 @@ from mintpilot.core.tree import Mint, ScoredQuery, StopReason
 from mintpilot.elicitation.sentences import is_sayable
 from mintpilot.reasoning.certificate import bound_s
 from mintpilot.reasoning.safety import unknown_regions
-from mintpilot.strategies.flying import cautious_plan, fly, questions_left
+from mintpilot.strategies.flying import cautious_plan, cost_if_flown_s, fly, questions_left
 
 MAX_CONFIRMATIONS = 50
 """Bound on the answers that are counted on in a row."""
@@ -30,7 +30,8 @@ def confirm_or_avoid(situation: Situation, mint: Mint, plan: Plan, reason: StopR
     if not doubtful:
         return fly(situation, mint, plan, reason)
     around = cautious_plan(situation)
-    saving_s = (around.cost_s if around else settings.failure_price_s) - plan.cost_s
+    done_s = cost_if_flown_s(situation, plan)
+    saving_s = (cost_if_flown_s(situation, around) - done_s) if around else settings.failure_price_s - plan.cost_s
     # Measured from the best plan under each hypothesis, not from this one: delta_c is spent once.
     if around is not None and bound_s(around, mint, belief, settings) <= settings.delta_c_s + TOLERANCE:
         return fly(situation, mint, around, StopReason.GOOD_FOR_ALL)

@@ -51,14 +51,27 @@ def best_safe_plan(situation: Situation, mint: Mint) -> Plan | None:
 
 
 def expected_cost_s(situation: Situation, mint: Mint, plan: Plan) -> float:
-    """Seconds of flight, plus the price of failure times its probability."""
+    """Seconds of flight, what is left undone on average, and the price of failure times its probability."""
     held = float(np.where(succeeds(plan, mint.belief), mint.belief.probability, 0.0).sum())
     axes = {g.id for g in mint.belief.gaps}
     for factor in situation.belief.factors:
         for gap_id, value in demands(plan).items():
             if gap_id not in axes and any(g.id == gap_id for g in factor.gaps):
                 held *= factor.probability_of(gap_id, value)
-    return plan.cost_s + max(0.0, 1.0 - held) * situation.settings.failure_price_s
+    return cost_if_flown_s(situation, plan) + max(0.0, 1.0 - held) * situation.settings.failure_price_s
+
+
+def cost_if_flown_s(situation: Situation, plan: Plan) -> float:
+    """Seconds of flight, and what is left undone on average, if the plan is flown as it is meant.
+
+    Somebody who may be in a room that is not looked into counts by the expectation, once (method, section 9).
+    """
+    known = {gap.id for gap in situation.belief.gaps}
+    missed_s = sum(
+        price_s * (situation.belief.probability_of(gap, value) if gap in known else 1.0)
+        for gap, value, price_s in plan.stakes
+    )
+    return plan.cost_s + plan.undone_s + missed_s
 
 
 def fly(

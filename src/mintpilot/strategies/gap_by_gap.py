@@ -10,6 +10,7 @@ from mintpilot.core.gap import Assumptions, GapKind, KnowledgeGap
 from mintpilot.core.ports import Ask, Decision, Situation, Strategy
 from mintpilot.core.tolerances import TOLERANCE
 from mintpilot.core.tree import StopReason
+from mintpilot.reasoning.classes import least_cost_s
 from mintpilot.reasoning.entropy import entropy_bits
 from mintpilot.reasoning.support import narrow
 from mintpilot.strategies.exhaustive import best_about, is_known
@@ -48,11 +49,12 @@ def _critical(gap: KnowledgeGap, given: Assumptions, situation: Situation) -> bo
     settings = situation.settings
     if gap.kind is GapKind.TARGET:
         return entropy_bits(situation.belief.marginal(gap.id)) > settings.goal_entropy_bits
-    plans = [situation.space.optimistic(given.assume(gap.id, (value,))) for value in given.possible(gap)]
+    cases = [given.assume(gap.id, (value,)) for value in given.possible(gap)]
+    plans = [situation.space.optimistic(case) for case in cases]
     found = [p for p in plans if p is not None]
     if len(found) < len(plans):
         return bool(found)
-    costs = [p.cost_s for p in found]
+    costs = [least_cost_s(p, case) for p, case in zip(plans, cases, strict=True) if p is not None]
     if max(costs) - min(costs) > settings.delta_c_s + TOLERANCE:
         return True
     apart = max((situation.metric.divergence(found[0].path_m, p.path_m) for p in found[1:]), default=0.0)

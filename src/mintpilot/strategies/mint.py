@@ -129,7 +129,7 @@ def _good_for_all(situation: Situation, mint: Mint) -> Plan | None:
     worst = regret_matrix(mint, settings).max(axis=1, initial=0.0)
     plans = plans_of(mint)
     good = [plans[i] for i in np.flatnonzero(worst <= settings.delta_c_s + TOLERANCE)]
-    for plan in sorted((p for p in good if p is not None), key=lambda p: (p.cost_s, p.signature)):
+    for plan in sorted((p for p in good if p is not None), key=lambda p: (p.cost_s + p.undone_s, p.signature)):
         near = settings.rule is CriticalityRule.REGRET or _near_all(situation, mint, plan)
         if near and may_be_flown(situation, plan):
             return plan

@@ -7,16 +7,16 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from mintpilot.core.errors import InputError
-from mintpilot.core.gap import GapKind, KnowledgeGap
+from mintpilot.core.gap import PRESENT, Belief, GapKind, KnowledgeGap
 from mintpilot.core.geometry import Vec3
 from mintpilot.core.observation import RegionKind
-from mintpilot.core.plan import PlanningProblem, Stop, VehicleLimits
+from mintpilot.core.plan import PRICE_S, PlanningProblem, Stop, VehicleLimits
 from mintpilot.core.semantic_map import Knowledge, Region, SemanticMap
 from mintpilot.core.task import Task
 from mintpilot.uncertainty.gaps import obstacle_gaps, presence_gaps
 from mintpilot.uncertainty.keep_away import PREFIX
 from mintpilot.uncertainty.matching import Standpoint
-from mintpilot.uncertainty.targets import bind
+from mintpilot.uncertainty.targets import PERSON, bind
 from mintpilot.uncertainty.things import things_of
 
 
@@ -33,6 +33,16 @@ class Findings:
     wishes: tuple[str, ...] = ()
     """Ids of open regions that are stayed out of only because the person wished so. Where nothing can be flown,
     `find_gaps` with ``honour_wishes=False`` lets them be asked about."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Prices:
+    """What leaving stops undone costs, for those that name no price of their own."""
+
+    usual_s: float = PRICE_S
+    """Seconds of flight."""
+    people_s: float | None = None
+    """Of people, seen or supposed; None: as usual."""
 
 
 def find_gaps(
@@ -91,8 +101,22 @@ def frame_problem(
     start_m: Vec3,
     limits: VehicleLimits,
     finished: frozenset[str] = frozenset(),
+    prices: Prices | None = None,
+    belief: Belief | None = None,
+    home_m: Vec3 | None = None,
 ) -> PlanningProblem:
     """Puts map, findings and vehicle into the form that a planner takes.
+
+    Args:
+        map: what is believed of the world.
+        task: what is to be done.
+        findings: the gaps and stops that map and task come to.
+        start_m: where the drone is, metres.
+        limits: what the vehicle can do.
+        finished: ids of stops already fulfilled.
+        prices: of leaving stops undone; None: `PRICE_S` each.
+        belief: says how likely it is that somebody is in a room; None: as the gaps' priors say.
+        home_m: where the drone must be able to return to, metres; None: nowhere.
 
     Raises:
         InputError: nothing of the task can be done, since its phrases match nothing that was seen.
@@ -103,8 +127,31 @@ def frame_problem(
             "Name something that was seen, or look at more of the place first."
         )
     return PlanningProblem(
-        map=map, start_m=start_m, stops=findings.stops, gaps=findings.gaps, limits=limits, finished=finished
+        map=map,
+        start_m=start_m,
+        stops=tuple(_weighed(stop, task, findings, prices or Prices(), belief) for stop in findings.stops),
+        gaps=findings.gaps,
+        limits=limits,
+        finished=finished,
+        home_m=home_m,
     )
+
+
+def _weighed(stop: Stop, task: Task, findings: Findings, prices: Prices, belief: Belief | None) -> Stop:
+    """The stop with its price, and the probability that it is needed."""
+    if not stop.optional:
+        subgoal = task.subgoals[int(stop.id.split(":")[1]) - 1]
+        of_kind_s = prices.people_s if subgoal.reference.label == PERSON else None
+        own_s = next((p for p in (subgoal.price_s, of_kind_s) if p is not None), prices.usual_s)
+        number, named = int(stop.id.split(":")[1]), stop.id.split(":")[2:]
+        step = task.step_for(number)
+        text = f"go to {named[0]}" if step.action == "seek" and named else step.text
+        return replace(stop, price_s=own_s, step=step.n, text=text)
+    gap = next(gap for gap in findings.gaps if gap.id == stop.gap)
+    chance = belief.probability_of(gap.id, PRESENT) if belief else gap.prior[gap.values.index(PRESENT)]
+    price_s = prices.usual_s if prices.people_s is None else prices.people_s
+    seek = task.step_for(0).n
+    return replace(stop, price_s=price_s, chance=chance, step=seek, text=f"look into {gap.description}")
 
 
 def told_apart(gaps: Sequence[KnowledgeGap], start_m: Vec3) -> list[KnowledgeGap]:

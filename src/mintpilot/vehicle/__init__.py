@@ -1,1 +1,1 @@
-"""Real flight links."""
+"""Real flight links: an autopilot over MAVLink, flown from a process of its own."""

@@ -1,0 +1,58 @@
+"""A real vehicle for a mission: what its link must know of the map, and the process that deliberates beside it."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from mintpilot.assembly.worlds import World
+from mintpilot.core.geometry import Box
+from mintpilot.core.semantic_map import Cell, SemanticMap
+from mintpilot.mission.navigation import landable_cells
+from mintpilot.vehicle.envelope import SafetyEnvelope
+from mintpilot.vehicle.mavlink_vehicle import MavlinkVehicle
+
+ABOVE_LAYER_M = 0.5
+"""A flat map says nothing of heights: the vehicle stays this near to its one layer, metres."""
+
+
+def make_vehicle(
+    world: World, address: str, *, accept_failsafes: bool = False, only_check: bool = False
+) -> MavlinkVehicle:
+    """The vehicle at that address, prepared on the ground; see `MavlinkVehicle` for what may go wrong."""
+    return MavlinkVehicle(
+        address,
+        envelope_of(world),
+        endurance_s=world.rules.endurance_s,
+        georeference=world.mission.georeference,
+        accept_failsafes=accept_failsafes,
+        only_check=only_check,
+    )
+
+
+def envelope_of(world: World) -> SafetyEnvelope:
+    """What the link must know to end a flight by itself, of the map as it is before the flight.
+
+    Only what is seen free down to the ground is landed on; a flat map shows no ground: what is free there may be. A
+    straight return is never flown without a georeference, nor on a flat map, which does not say how high things are.
+    """
+    mission, frame = world.mission, world.map.frame
+    (x0, y0, z0), (x1, y1, z1) = mission.volume.lo_m, mission.volume.hi_m
+    volume = mission.volume
+    if frame.is_flat:
+        volume = Box(lo_m=(x0, y0, min(z0, 0.0)), hi_m=(x1, y1, z1 + ABOVE_LAYER_M))
+    return SafetyEnvelope(
+        volume=volume,
+        hover_m=mission.start_m,
+        ground_m=0.0 if frame.is_flat else z0,
+        frame=frame,
+        landable=landable_cells(world.map, mission.limits),
+        tallest_m=None if frame.is_flat else tallest_m(world.map),
+        outdoors=mission.georeference is not None,
+    )
+
+
+def tallest_m(map: SemanticMap) -> float:
+    """Top of the highest cell that is occupied, metres; the map's floor where none is."""
+    occupied = np.nonzero((map.cells == Cell.OCCUPIED).any(axis=(1, 2)))[0]
+    levels = int(occupied[-1]) + 1 if len(occupied) else 0
+    return float(map.frame.origin_m[2] + levels * map.frame.resolution_m)

@@ -1,0 +1,88 @@
+"""Camera pictures for browsers: the latest one, and those that show what a question is about."""
+
+from __future__ import annotations
+
+import io
+from collections import OrderedDict
+
+from mintpilot.console.board import Board
+from mintpilot.console.protocol import PictureBox, PicturePane
+from mintpilot.core.events import FrameSeen
+from mintpilot.core.gap import KnowledgeGap
+from mintpilot.core.query import Question
+from mintpilot.core.semantic_map import SemanticMap
+
+MOST_KEPT = 1000
+"""Pictures kept as JPEG; the oldest are thrown away first."""
+MOST_SHOWN = 4
+"""Pictures shown beside one question."""
+_QUALITY = 80
+
+
+class Pictures:
+    """Keeps the pictures of one mission as JPEG.
+
+    Args:
+        board: where they are shown.
+    """
+
+    def __init__(self, board: Board) -> None:
+        self._board = board
+        self._kept: OrderedDict[int, tuple[float, bytes]] = OrderedDict()
+
+    def seen(self, event: FrameSeen) -> None:
+        """A new picture, with what was found in it."""
+        from PIL import Image
+
+        out = io.BytesIO()
+        Image.fromarray(event.frame.rgb).save(out, "JPEG", quality=_QUALITY)
+        self._kept[event.index] = (event.frame.time_s, out.getvalue())
+        if len(self._kept) > MOST_KEPT:
+            self._kept.popitem(last=False)
+        boxes = tuple(
+            PictureBox(id="", words=d.label, box=_box(d.pixels)) for d in event.detections if d.pixels[2] > d.pixels[0]
+        )
+        pane = PicturePane(frame=event.index, time_s=round(event.frame.time_s, 2), boxes=boxes)
+        self._board.put("camera", pane, out.getvalue())
+
+    def about(self, question: Question, map: SemanticMap | None) -> None:
+        """The pictures in which the things are that the question is about, with their outlines."""
+        by_frame: dict[int, list[PictureBox]] = {}
+        for gap in question.gaps if map is not None else ():
+            for name, words in _subjects(gap):
+                view = _view(map, name) if map is not None else None
+                if view is not None and view[0] in self._kept:
+                    box = PictureBox(id=name, words=words, box=_box(view[1:]))
+                    by_frame.setdefault(view[0], []).append(box)
+        shown = sorted(by_frame.items(), key=lambda item: -len(item[1]))[:MOST_SHOWN]
+        for number in range(MOST_SHOWN):
+            if number < len(shown):
+                frame, boxes = shown[number]
+                time_s, jpeg = self._kept[frame]
+                pane = PicturePane(frame=frame, time_s=round(time_s, 2), boxes=tuple(boxes), question=question.id)
+                self._board.put(f"evidence-{number}", pane, jpeg)
+            else:
+                self._board.put(f"evidence-{number}", PicturePane(frame=-1, time_s=0.0))
+
+    def clear(self) -> None:
+        """Nothing is asked about."""
+        for number in range(MOST_SHOWN):
+            self._board.put(f"evidence-{number}", PicturePane(frame=-1, time_s=0.0))
+
+
+def _subjects(gap: KnowledgeGap) -> list[tuple[str, str]]:
+    if gap.candidates:
+        return [(c.id, c.description or c.id) for c in gap.candidates]
+    return [(gap.subject, gap.description)]
+
+
+def _view(map: SemanticMap, name: str) -> tuple[int, int, int, int, int] | None:
+    views = {region.id: region.best_view for region in map.regions}
+    views |= {room.id: room.best_view for room in map.rooms}
+    views |= {one.id: one.best_view for one in map.objects}
+    return views.get(name)
+
+
+def _box(pixels: tuple[int, ...]) -> tuple[float, float, float, float]:
+    left, top, right, bottom = (float(x) for x in pixels)
+    return (left, top, right, bottom)

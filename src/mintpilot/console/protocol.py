@@ -1,0 +1,351 @@
+"""What browser and server say to each other over the WebSocket: the only place where web data is read or written."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal, TypeAlias
+
+from pydantic import BaseModel, ConfigDict, Field, TypeAdapter
+
+from mintpilot.core.query import Order
+
+LONGEST_BYTES = 4096
+"""A message of a browser may be no longer than this, bytes."""
+LONGEST_TEXT = 400
+"""Free words may be no longer than this, characters."""
+
+
+class Message(BaseModel):
+    """Closed and immutable: an unknown field is an error."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+Name: TypeAlias = Annotated[str, Field(max_length=120)]
+
+
+class Hello(Message):
+    """The first message of a browser. It opens nothing but what its token stands for."""
+
+    kind: Literal["hello"] = "hello"
+    token: Annotated[str, Field(max_length=100)]
+    browser: Annotated[str, Field(pattern=r"^[a-z0-9]{8,32}$")]
+    """Drawn at random by the browser, and the same after a reload."""
+
+
+class Command(Message):
+    """Something that a browser wants done. Sent again after a broken link until it is acknowledged."""
+
+    n: Annotated[int, Field(ge=1, le=10**9)]
+    """Counts up in each browser; a number that was seen already is acknowledged and not done again."""
+
+
+class QuestionSeen(Command):
+    """The question is in front of the person."""
+
+    kind: Literal["seen"] = "seen"
+    question: Name
+
+
+class Replied(Command):
+    """A key or button for that question."""
+
+    kind: Literal["reply"] = "reply"
+    question: Name
+    reply: Literal["yes", "no", "unsure", "option"]
+    option: Annotated[int, Field(ge=0, le=3)] | None = None
+    confirms: bool = False
+    """Whether a read-back was on the screen, not the question itself."""
+
+
+class Pointed(Command):
+    """A thing that the open question may be about was chosen on the map or in the list: this one."""
+
+    kind: Literal["this-one"] = "this-one"
+    question: Name
+    thing: Name
+
+
+class Said(Command):
+    """Free words: an answer to that question, or an order."""
+
+    kind: Literal["say"] = "say"
+    question: Annotated[str, Field(max_length=120)] = ""
+    text: Annotated[str, Field(min_length=1, max_length=LONGEST_TEXT)]
+
+
+class MoreTime(Command):
+    """More time is needed for that question."""
+
+    kind: Literal["more-time"] = "more-time"
+    question: Name
+
+
+class Ordering(Command):
+    """An order; live at any time."""
+
+    kind: Literal["order"] = "order"
+    order: Order
+
+
+class TakeSeat(Command):
+    """This browser answers from now on."""
+
+    kind: Literal["take-seat"] = "take-seat"
+
+
+class LeaveSeat(Command):
+    """This browser answers no longer: another one may take over."""
+
+    kind: Literal["leave-seat"] = "leave-seat"
+
+
+AnyCommand: TypeAlias = Annotated[
+    QuestionSeen | Replied | Pointed | Said | MoreTime | Ordering | TakeSeat | LeaveSeat, Field(discriminator="kind")
+]
+COMMANDS: TypeAdapter[AnyCommand] = TypeAdapter(AnyCommand)
+
+Point: TypeAlias = tuple[float, float, float]
+Box: TypeAlias = tuple[float, float, float, float]
+"""Left, bottom, right, top on the map, metres; of a picture left, top, right, bottom in pixels."""
+
+
+class MissionPane(Message):
+    """What is flown."""
+
+    name: str
+    instruction: str
+    lang: str
+    strategy: str
+    start: Point
+    briefing: tuple[str, ...] = ()
+    verdict: str = ""
+    """Empty while it goes on."""
+    reason: str = ""
+
+
+class PosePane(Message):
+    """Where the drone is, and what its battery gives."""
+
+    time_s: float
+    position: Point
+    yaw_rad: float
+    speed_mps: float
+    battery_s: float | None
+    """Flight time that is left; None: without limit."""
+    need_s: float | None
+    """What the rest of the plan takes; None: there is no plan."""
+
+
+class PathPane(Message):
+    """The plan as it stands."""
+
+    points: tuple[Point, ...] = ()
+    seconds: float = 0.0
+
+
+class StepPane(Message):
+    """One step of the mission."""
+
+    text: str
+    state: Literal["open", "now", "done", "left-out"]
+
+
+class StepsPane(Message):
+    """All steps, in order."""
+
+    steps: tuple[StepPane, ...]
+
+
+class Thing(Message):
+    """An object of the map, or a closed room's door."""
+
+    id: str
+    label: str
+    words: str
+    box: Box
+    state: str = ""
+    """Of rooms: ``open``, ``searched``, ``yes`` (somebody inside) or ``no``."""
+
+
+class RegionPane(Message):
+    """A region; its cells are those of the map picture with its number."""
+
+    id: str
+    words: str
+    passable: Literal["open", "yes", "no"]
+    centre: tuple[float, float]
+
+
+class MapPane(Message):
+    """Goes in front of the map's picture: one grey value for each column of voxels, north up."""
+
+    box: Box
+    things: tuple[Thing, ...]
+    regions: tuple[RegionPane, ...]
+    """Region i has the grey value 3 + i; 0: unknown, 1: free, 2: occupied."""
+
+
+class PictureBox(Message):
+    """A thing in a picture."""
+
+    id: str
+    words: str
+    box: Box
+
+
+class PicturePane(Message):
+    """Goes in front of a camera picture."""
+
+    frame: int
+    time_s: float
+    boxes: tuple[PictureBox, ...] = ()
+    question: str = ""
+    """Of a picture that shows what a question is about: the question's id."""
+
+
+class Consequence(Message):
+    """What one reply leads to."""
+
+    reply: Literal["yes", "no", "unsure", "option", "silence"]
+    option: int | None = None
+    words: str
+    """Empty where the page's own words say it."""
+    path: tuple[Point, ...] = ()
+    seconds: float | None = None
+    share: float | None = None
+    """Probability of this plan, given the reply."""
+    undone: tuple[str, ...] = ()
+
+
+class Spot(Message):
+    """A place that the question is about."""
+
+    id: str
+    words: str
+    position: Point
+    region: str = ""
+    choosable: bool = False
+    """Whether "this one" is an answer."""
+
+
+class Worth(Message):
+    """What the question is worth, in figures."""
+
+    gain_bits: float
+    saved_s: float
+    queries: int
+    """How many were compared, as far as is known."""
+    gaps: int
+    """How many things are not known."""
+
+
+class QuestionPane(Message):
+    """The open question; all fields empty while there is none."""
+
+    id: str = ""
+    text: str = ""
+    lang: str = "en"
+    attempt: int = 1
+    deadline_s: float = 0.0
+    """On the mission clock."""
+    extended: bool = False
+    consequences: tuple[Consequence, ...] = ()
+    spots: tuple[Spot, ...] = ()
+    why: tuple[str, ...] = ()
+    """What hangs on each gap."""
+    worth: Worth | None = None
+    read_back: str = ""
+    """What was understood and must be confirmed: ``yes``, ``no``, or the words of an option."""
+    read_back_means: str = ""
+    again: bool = False
+    """Whether words were not understood."""
+    closed: str = ""
+    """Why the last question is no longer open."""
+
+
+class TreeNode(Message):
+    """One node of the tree."""
+
+    words: str
+    probability: float
+    branch: str = ""
+    leaf: str = ""
+    cost_s: float | None = None
+    divergence_m: float | None = None
+    ruled_out_by: int | None = None
+    """Number of the answer, from 1; None: still possible."""
+    flown: bool = False
+    left_out: int = 0
+    children: tuple[TreeNode, ...] = ()
+
+
+class AnswerLine(Message):
+    """One answer that was taken over."""
+
+    question: str
+    reply: str
+
+
+class GapLine(Message):
+    """One gap with the reason for asking about it or not."""
+
+    words: str
+    asked: bool
+    relevant: bool
+    why: str
+    figures: str
+    entropy_bits: float
+    gain_bits: float
+
+
+class TreeRound(Message):
+    """The tree of an earlier deliberation, with what the answers since then ruled out."""
+
+    round: int
+    root: TreeNode
+    answers: tuple[AnswerLine, ...]
+
+
+class TreePane(Message):
+    """The tree of the latest deliberation."""
+
+    round: int
+    root: TreeNode | None
+    nodes: int
+    answers: tuple[AnswerLine, ...]
+    gaps: tuple[GapLine, ...]
+    certificate: str = ""
+    earlier: tuple[TreeRound, ...] = ()
+
+
+class LogLine(Message):
+    """One line of the event log."""
+
+    time_s: float
+    kind: str
+    text: str
+
+
+class SeatPane(Message):
+    """To one browser: what it may do, and who answers."""
+
+    may_answer: bool
+    seated: bool
+    taken: bool
+    """Whether the browser that answers is connected."""
+    viewers: int
+
+
+class FlownPoint(Message):
+    """One place of the flown path."""
+
+    at: Point
+
+
+class AttentionPane(Message):
+    """What was asked back in words: the page shows the place, the picture or the figures, or repeats the question."""
+
+    n: int
+    """Counts up."""
+    to: str
+    """``where``, ``show``, ``why``, ``repeat``; ``nothing-asked``: words came that were no order."""

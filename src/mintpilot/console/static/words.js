@@ -1,0 +1,99 @@
+// The page's own words. What the drone says comes in the mission's language.
+
+const WORDS = {
+  en: {
+    briefing: "As it was understood", noMap: "No map yet", skip: "To the question", language: "Language", question: "Question", say: "In your own words", send: "Send",
+    map: "Map", camera: "What the drone sees", mission: "Mission", log: "What happened", tree: "How it thinks", gaps: "What it does not know",
+    hold: "Hold", continue: "Continue", return: "Return", land: "Land", abort: "Abort", orders: "Orders",
+    answering: "You answer", watching: "You watch", take: "Answer from here", takeOver: "Take over answering", leave: "Hand over",
+    calm: "Nothing is asked. You can give an order at any time.", asks: "The drone asks", asksAgain: "The drone asks again, in other words",
+    yes: "Yes", no: "No", unsure: "I don't know", unsureMeans: "it asks something else, or takes the careful way",
+    silence: "No answer", silenceMeans: "it takes the way that is safe whatever holds", seconds: "{} s", likely: "most likely", undone: "left undone: {}",
+    understood: "I understood: {}", isRight: "Is that right?", right: "Yes, that is right", wrong: "No, ask me again",
+    again: "I did not understand. Please use a button, or say yes, no, or what is the case.", more: "More time", repeat: "Repeat", aloud: "Read aloud", mute: "Mute",
+    why: "Why do you ask?", where: "Where?", left: "{} s left", over: "Time is over", thisOne: "This one", reasons: "{0} bit about the plan, {1} s expected to be saved; best of {2} possible questions; {3} things are not known.",
+    lost: "LINK LOST", lostOpen: "The drone waits for an answer until its time is over, then takes the careful way. What you press is kept and sent when the link is back.",
+    lostCalm: "The drone goes on with its checked plan. What you press is kept and sent when the link is back.", refused: "This address does not open the console. Use the whole address that the program printed.",
+    free: "free", wall: "occupied", unknown: "not seen", open: "not known", passable: "may be flown through", blocked: "must not be entered", planned: "planned", flown: "flown", drone: "drone", room: "closed room", reply: "way after that answer",
+    battery: "Battery", batteryHas: "{} s left", batteryNeeds: "the plan needs {} s", batteryFree: "without limit", height: "Height", speed: "Speed", clock: "Mission clock",
+    now: "now", done: "done", "left-out": "left out", todo: "to do", closed: "Closed: {}", ended: "The mission is over", sent: "Sent.", notTaken: "Not taken: another browser answers.", nothingAsked: "Nothing is asked now. Orders: hold, continue, return, land, abort.",
+    asked: "asked", notAsked: "not asked", best: "best", flownPlan: "this is flown", ruledOut: "ruled out by answer {}", omitted: "{} more", nodes: "{} nodes", apart: "{} m apart", noTree: "This way of asking builds no tree.", answerNo: "Answer {}",
+    mapLabel: "Map from above. The drone is at {0} east, {1} north, {2} high.", evidence: "What the question is about", noQuestion: "no question",
+    "log-question": "asks", "log-answer": "answer", "log-order": "order", "log-says": "says", "log-note": "note", "log-plan": "plan", "log-begun": "begins", "log-ended": "end",
+  },
+  de: {
+    briefing: "So wurde es verstanden", noMap: "Noch keine Karte", skip: "Zur Frage", language: "Sprache", question: "Frage", say: "In eigenen Worten", send: "Senden",
+    map: "Karte", camera: "Was die Drohne sieht", mission: "Mission", log: "Was geschah", tree: "Wie sie überlegt", gaps: "Was sie nicht weiß",
+    hold: "Halt", continue: "Weiter", return: "Zurück", land: "Landen", abort: "Abbrechen", orders: "Befehle",
+    answering: "Sie antworten", watching: "Sie sehen zu", take: "Von hier antworten", takeOver: "Das Antworten übernehmen", leave: "Übergeben",
+    calm: "Gerade wird nichts gefragt. Befehle gehen jederzeit.", asks: "Die Drohne fragt", asksAgain: "Die Drohne fragt noch einmal, mit anderen Worten",
+    yes: "Ja", no: "Nein", unsure: "Weiß nicht", unsureMeans: "sie fragt etwas anderes oder nimmt den vorsichtigen Weg",
+    silence: "Keine Antwort", silenceMeans: "sie nimmt den Weg, der in jedem Fall sicher ist", seconds: "{} s", likely: "am ehesten", undone: "bleibt ungetan: {}",
+    understood: "Ich habe verstanden: {}", isRight: "Stimmt das?", right: "Ja, das stimmt", wrong: "Nein, noch einmal fragen",
+    again: "Das habe ich nicht verstanden. Bitte eine Taste, oder ja, nein, oder was der Fall ist.", more: "Mehr Zeit", repeat: "Wiederholen", aloud: "Vorlesen", mute: "Stumm",
+    why: "Warum fragst du?", where: "Wo?", left: "noch {} s", over: "Die Zeit ist um", thisOne: "Dieses", reasons: "{0} bit über den Plan, {1} s Ersparnis zu erwarten; beste von {2} möglichen Fragen; {3} Dinge sind nicht bekannt.",
+    lost: "VERBINDUNG VERLOREN", lostOpen: "Die Drohne wartet auf eine Antwort, bis die Zeit um ist, und nimmt dann den vorsichtigen Weg. Was Sie drücken, wird aufgehoben und später gesendet.",
+    lostCalm: "Die Drohne fliegt ihren geprüften Plan weiter. Was Sie drücken, wird aufgehoben und später gesendet.", refused: "Diese Adresse öffnet die Konsole nicht. Bitte die ganze Adresse benutzen, die das Programm genannt hat.",
+    free: "frei", wall: "belegt", unknown: "nicht gesehen", open: "nicht bekannt", passable: "darf durchflogen werden", blocked: "darf nicht betreten werden", planned: "geplant", flown: "geflogen", drone: "Drohne", room: "geschlossener Raum", reply: "Weg nach dieser Antwort",
+    battery: "Akku", batteryHas: "noch {} s", batteryNeeds: "der Plan braucht {} s", batteryFree: "ohne Grenze", height: "Höhe", speed: "Tempo", clock: "Missionszeit",
+    now: "jetzt", done: "getan", "left-out": "ausgelassen", todo: "offen", closed: "Geschlossen: {}", ended: "Die Mission ist zu Ende", sent: "Gesendet.", notTaken: "Nicht angenommen: ein anderer Browser antwortet.", nothingAsked: "Gerade wird nichts gefragt. Befehle: halt, weiter, zurück, landen, abbrechen.",
+    asked: "gefragt", notAsked: "nicht gefragt", best: "bester", flownPlan: "wird geflogen", ruledOut: "ausgeschlossen durch Antwort {}", omitted: "{} weitere", nodes: "{} Knoten", apart: "{} m auseinander", noTree: "Diese Art zu fragen baut keinen Baum.", answerNo: "Antwort {}",
+    mapLabel: "Karte von oben. Die Drohne ist bei {0} Ost, {1} Nord, {2} hoch.", evidence: "Worum es geht", noQuestion: "keine Frage",
+    "log-question": "fragt", "log-answer": "Antwort", "log-order": "Befehl", "log-says": "sagt", "log-note": "Hinweis", "log-plan": "Plan", "log-begun": "Beginn", "log-ended": "Ende",
+  },
+  fr: {
+    briefing: "Ce qui a été compris", noMap: "Pas encore de carte", skip: "Vers la question", language: "Langue", question: "Question", say: "Avec vos mots", send: "Envoyer",
+    map: "Carte", camera: "Ce que voit le drone", mission: "Mission", log: "Ce qui s'est passé", tree: "Comment il raisonne", gaps: "Ce qu'il ignore",
+    hold: "Stop", continue: "Continuer", return: "Revenir", land: "Atterrir", abort: "Annuler", orders: "Ordres",
+    answering: "Vous répondez", watching: "Vous regardez", take: "Répondre d'ici", takeOver: "Reprendre les réponses", leave: "Passer la main",
+    calm: "Rien n'est demandé. Vous pouvez donner un ordre à tout moment.", asks: "Le drone demande", asksAgain: "Le drone demande encore, en d'autres mots",
+    yes: "Oui", no: "Non", unsure: "Je ne sais pas", unsureMeans: "il demande autre chose ou prend le chemin prudent",
+    silence: "Sans réponse", silenceMeans: "il prend le chemin sûr dans tous les cas", seconds: "{} s", likely: "le plus probable", undone: "reste à faire : {}",
+    understood: "J'ai compris : {}", isRight: "C'est juste ?", right: "Oui, c'est juste", wrong: "Non, redemandez-moi",
+    again: "Je n'ai pas compris. Utilisez un bouton, ou dites oui, non, ou ce qu'il en est.", more: "Plus de temps", repeat: "Répéter", aloud: "Lire à voix haute", mute: "Muet",
+    why: "Pourquoi cette question ?", where: "Où ?", left: "encore {} s", over: "Le temps est écoulé", thisOne: "Celui-ci", reasons: "{0} bit sur le plan, {1} s à gagner en moyenne ; la meilleure de {2} questions possibles ; {3} choses sont inconnues.",
+    lost: "LIAISON PERDUE", lostOpen: "Le drone attend une réponse jusqu'à la fin du délai, puis prend le chemin prudent. Ce que vous pressez est gardé et envoyé au retour de la liaison.",
+    lostCalm: "Le drone poursuit son plan vérifié. Ce que vous pressez est gardé et envoyé au retour de la liaison.", refused: "Cette adresse n'ouvre pas la console. Utilisez l'adresse entière que le programme a affichée.",
+    free: "libre", wall: "occupé", unknown: "non vu", open: "inconnu", passable: "peut être traversé", blocked: "interdit", planned: "prévu", flown: "parcouru", drone: "drone", room: "pièce fermée", reply: "chemin après cette réponse",
+    battery: "Batterie", batteryHas: "encore {} s", batteryNeeds: "le plan demande {} s", batteryFree: "sans limite", height: "Hauteur", speed: "Vitesse", clock: "Temps de mission",
+    now: "en cours", done: "fait", "left-out": "omis", todo: "à faire", closed: "Close : {}", ended: "La mission est terminée", sent: "Envoyé.", notTaken: "Refusé : un autre navigateur répond.", nothingAsked: "Rien n'est demandé. Ordres : stop, continue, reviens, atterris, annule.",
+    asked: "demandé", notAsked: "non demandé", best: "meilleur", flownPlan: "plan suivi", ruledOut: "exclu par la réponse {}", omitted: "{} de plus", nodes: "{} nœuds", apart: "écart de {} m", noTree: "Cette façon de demander ne construit pas d'arbre.", answerNo: "Réponse {}",
+    mapLabel: "Carte vue d'en haut. Le drone est à {0} est, {1} nord, hauteur {2}.", evidence: "L'objet de la question", noQuestion: "pas de question",
+    "log-question": "demande", "log-answer": "réponse", "log-order": "ordre", "log-says": "dit", "log-note": "note", "log-plan": "plan", "log-begun": "début", "log-ended": "fin",
+  },
+  es: {
+    briefing: "Lo que se ha entendido", noMap: "Aún no hay mapa", skip: "A la pregunta", language: "Idioma", question: "Pregunta", say: "Con sus palabras", send: "Enviar",
+    map: "Mapa", camera: "Lo que ve el dron", mission: "Misión", log: "Qué ha pasado", tree: "Cómo razona", gaps: "Lo que no sabe",
+    hold: "Alto", continue: "Seguir", return: "Volver", land: "Aterrizar", abort: "Cancelar", orders: "Órdenes",
+    answering: "Usted responde", watching: "Usted observa", take: "Responder desde aquí", takeOver: "Tomar las respuestas", leave: "Ceder el turno",
+    calm: "No se pregunta nada. Puede dar una orden en cualquier momento.", asks: "El dron pregunta", asksAgain: "El dron pregunta otra vez, con otras palabras",
+    yes: "Sí", no: "No", unsure: "No sé", unsureMeans: "pregunta otra cosa o toma el camino prudente",
+    silence: "Sin respuesta", silenceMeans: "toma el camino que es seguro en cualquier caso", seconds: "{} s", likely: "lo más probable", undone: "queda sin hacer: {}",
+    understood: "He entendido: {}", isRight: "¿Es correcto?", right: "Sí, es correcto", wrong: "No, pregunte otra vez",
+    again: "No he entendido. Use un botón, o diga sí, no, o lo que ocurre.", more: "Más tiempo", repeat: "Repetir", aloud: "Leer en voz alta", mute: "Silencio",
+    why: "¿Por qué lo pregunta?", where: "¿Dónde?", left: "quedan {} s", over: "Se acabó el tiempo", thisOne: "Este", reasons: "{0} bit sobre el plan, {1} s de ahorro esperado; la mejor de {2} preguntas posibles; {3} cosas no se conocen.",
+    lost: "ENLACE PERDIDO", lostOpen: "El dron espera una respuesta hasta que acabe el tiempo y luego toma el camino prudente. Lo que pulse se guarda y se envía cuando vuelva el enlace.",
+    lostCalm: "El dron sigue su plan comprobado. Lo que pulse se guarda y se envía cuando vuelva el enlace.", refused: "Esta dirección no abre la consola. Use la dirección completa que mostró el programa.",
+    free: "libre", wall: "ocupado", unknown: "no visto", open: "no se sabe", passable: "se puede atravesar", blocked: "no se debe entrar", planned: "previsto", flown: "volado", drone: "dron", room: "sala cerrada", reply: "camino tras esa respuesta",
+    battery: "Batería", batteryHas: "quedan {} s", batteryNeeds: "el plan necesita {} s", batteryFree: "sin límite", height: "Altura", speed: "Velocidad", clock: "Tiempo de misión",
+    now: "ahora", done: "hecho", "left-out": "omitido", todo: "pendiente", closed: "Cerrada: {}", ended: "La misión ha terminado", sent: "Enviado.", notTaken: "No aceptado: responde otro navegador.", nothingAsked: "No se pregunta nada ahora. Órdenes: alto, sigue, vuelve, aterriza, cancela.",
+    asked: "preguntado", notAsked: "no preguntado", best: "mejor", flownPlan: "se vuela", ruledOut: "descartado por la respuesta {}", omitted: "{} más", nodes: "{} nodos", apart: "{} m de diferencia", noTree: "Esta forma de preguntar no construye árbol.", answerNo: "Respuesta {}",
+    mapLabel: "Mapa desde arriba. El dron está a {0} este, {1} norte, {2} de altura.", evidence: "De qué se trata", noQuestion: "sin pregunta",
+    "log-question": "pregunta", "log-answer": "respuesta", "log-order": "orden", "log-says": "dice", "log-note": "nota", "log-plan": "plan", "log-begun": "inicio", "log-ended": "fin",
+  },
+};
+
+let lang = "en";
+
+export const language = () => lang;
+
+export function speak(name) {
+  lang = WORDS[name] ? name : "en";
+  document.documentElement.lang = lang;
+  for (const element of document.querySelectorAll("[data-word]")) element.textContent = say(element.dataset.word);
+}
+
+export function say(key, ...values) {
+  const text = WORDS[lang][key] ?? WORDS.en[key] ?? key;
+  return text.replace("{}", values[0] ?? "").replace(/\{(\d)\}/g, (_, i) => values[i] ?? "");
+}
