@@ -483,3 +483,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         return ExitCode.INTERRUPTED
     return int(code or 0)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
