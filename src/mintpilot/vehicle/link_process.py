@@ -6,7 +6,9 @@ import gc
 import os
 import queue
 import signal
+import threading
 import time
+import traceback
 from contextlib import suppress
 from dataclasses import dataclass
 from multiprocessing.connection import Connection
@@ -28,6 +30,8 @@ from mintpilot.vehicle.signals import Act, Changed, Command, Ended, Fed, LinkEve
 
 TICK_S = 0.05
 """Between set-points, seconds: 20 a second."""
+CLOSING_S = 2.0
+"""Longest wait for the library at the end, seconds."""
 LOST_S = 2.0
 """An autopilot of which nothing was heard for so long is not waited for, seconds."""
 
@@ -81,8 +85,17 @@ def run_link(pipe: Connection, setup: LinkSetup) -> None:
             accept=setup.accept_failsafes,
         )
         _LinkLoop(pipe, link, setup, prepared).run()
-    finally:
-        link.close()
+    except Exception:
+        traceback.print_exc()
+    _close(link).join(CLOSING_S)
+    os._exit(0)  # a command that waits for an autopilot that is gone must not keep the process
+
+
+def _close(link: MavsdkLink) -> threading.Thread:
+    """Ends the connection beside the loop: the library may wait for commands that are under way."""
+    closing = threading.Thread(target=link.close, daemon=True)
+    closing.start()
+    return closing
 
 
 def _stand_alone() -> None:
@@ -159,7 +172,7 @@ class _LinkLoop:
                     self._link.act(order)
                 case Changed(link=Link.TELEMETRY, up=False):
                     self._channel.tell(order)
-                    self._link.close()  # no heartbeats any more: the autopilot's fail-safe waits for that
+                    _close(self._link)  # no heartbeats any more: the autopilot's fail-safe waits for that
                 case Ended() | Changed():
                     self._channel.tell(order)
 
