@@ -19,6 +19,7 @@ from mintpilot.benchmark.omniscient import survey_world
 from mintpilot.benchmark.warm import WarmPlanner
 from mintpilot.core.gap import Assumptions
 from mintpilot.core.mission import CriticalityRule
+from mintpilot.core.plan import Plan
 from mintpilot.mission.rehearsal import begin
 
 WAREHOUSE = Cell(scenario="fire-warehouse", methods=())
@@ -75,6 +76,11 @@ def test_the_mixture_takes_both_stances_over_the_trials() -> None:
     assert len(set(decisions)) > 1
 
 
+def paid(plan: Plan, truth: dict[str, str]) -> float:
+    """Seconds of flight, and the prices of what is left undone under that truth."""
+    return plan.cost_s + plan.undone_s + sum(s for gap, value, s in plan.stakes if truth.get(gap) == value)
+
+
 @pytest.mark.parametrize("seed", [2, 3, 5])
 def test_a_gap_mattered_exactly_when_flipping_the_truth_changes_the_best_mission(seed: int) -> None:
     world = true_world(WAREHOUSE, seed)
@@ -88,7 +94,8 @@ def test_a_gap_mattered_exactly_when_flipping_the_truth_changes_the_best_mission
     for gap in thought.findings.gaps:
         other = next(v for v in gap.values if v != truth[gap.id])
         flipped = thought.situation.space.optimistic(Assumptions.exactly(truth | {gap.id: other}))
-        costs = [plan.cost_s if plan else np.inf for plan in (best, flipped)]
+        known = (truth, truth | {gap.id: other})
+        costs = [paid(plan, told) if plan else np.inf for plan, told in zip((best, flipped), known, strict=True)]
         differs = costs[0] != costs[1] and abs(costs[0] - costs[1]) > parts.settings.delta_c_s
         assert next(g for g in record.gaps if g.id == gap.id).mattered == differs
 

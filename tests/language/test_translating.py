@@ -65,7 +65,7 @@ def _in(language: str, question: Question) -> Question:
             questions.BOX,
             "L'objet voulu est-il rouge ?",
             "je vole vers : la petite boîte rouge",
-            "je demande encore lequel c'est",
+            "je demande encore : il en reste 2 autres",
         ),
     ],
 )

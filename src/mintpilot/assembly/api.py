@@ -141,7 +141,7 @@ def run_mission(
     choices = Choices(
         strategy=strategy,
         strategy_arguments=_arguments(file, strategy, strategy_arguments),
-        vehicle=_vehicle(vehicle),
+        vehicle=vehicle_choice(vehicle),
         address=vehicle if vehicle.startswith(SCHEME) else "",
         accept_failsafes=accept_failsafes,
         perception=perception or file.perception.use,
@@ -207,7 +207,13 @@ def _arguments(file: MissionFile, strategy: str, given: Mapping[str, Argument] |
     return {**file.asking.strategy_arguments.get(strategy, {}), **(given or {})}
 
 
-def _vehicle(name: str) -> VehicleChoice:
+def vehicle_choice(name: str) -> VehicleChoice:
+    """The vehicle of that name, or of an address.
+
+    Raises:
+        UnknownNameError: there is none; the known ones are listed.
+        InputError: the address of a real vehicle cannot be read.
+    """
     if name.startswith(SCHEME):
         parse_address(name)  # a wrong one is told before anything is worked out
         return VehicleChoice.MAVLINK

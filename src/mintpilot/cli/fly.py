@@ -52,7 +52,7 @@ class FlightOptions:
 
 def fly(path: Path, options: FlightOptions) -> ExitCode:
     """Flies the mission in that file, tells how it goes, and prints the report, or as JSON its summary."""
-    from mintpilot.assembly.api import run_mission
+    from mintpilot.assembly.api import run_mission, vehicle_choice
     from mintpilot.assembly.strategies import parse_arguments
     from mintpilot.cli.progress import LenientConsole, Narrator
     from mintpilot.mission_file.reader import read_mission
@@ -60,6 +60,7 @@ def fly(path: Path, options: FlightOptions) -> ExitCode:
     from mintpilot.recording.run_summary import summary
     from mintpilot.recording.terminal_report import print_report
 
+    vehicle_choice(options.vehicle)  # a wrong name is told before anything is read
     arguments = parse_arguments(options.strategy_args)
     mission = read_mission(path)
     errors = LenientConsole(stderr=True)
