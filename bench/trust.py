@@ -26,7 +26,7 @@ def main() -> None:
     rows = measure_trust(given.trials, given.seed)
     keep(
         Section(
-            name="trust",
+            name="53-trust",
             title="Trust: pestering, certificates, consequences",
             command=f"python -m bench.trust --trials {given.trials} --seed {given.seed}",
             how="Worlds by turns: boxes of medicine, a warehouse on fire, one with two clouds and two rooms. Each "

@@ -197,7 +197,7 @@ def section(rows: list[Row]) -> Section:
         ],
     )
     return Section(
-        name="vehicle",
+        name="57-vehicle",
         title="Real flight links, against the vehicle double",
         command="python -m bench.vehicle",
         how=f"The medicine mission (seed 0), over MAVSDK and UDP on this machine; the fault comes {BEFORE_S:g} s after "

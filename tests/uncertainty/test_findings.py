@@ -283,6 +283,6 @@ def test_clouds_called_alike_are_told_apart_by_where_they_are():
     ]
     words = [gap.description for gap in told_apart(clouds, (1.0, 2.0, 1.0))]
     assert len(set(words)) == 4
-    assert words[2] == "the smoke at the drone"
-    assert words[3] == "the smoke 5 m south of the drone"
+    assert words[2] == "the smoke at the map's south-west corner"
+    assert words[3] == "the smoke 5 m south of the map's south-west corner"
     assert told_apart(clouds[:1], (0.0, 0.0, 0.0)) == clouds[:1]

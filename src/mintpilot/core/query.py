@@ -172,6 +172,10 @@ def choice(options: Sequence[Option], gaps: Iterable[KnowledgeGap]) -> Query:
     return Query(options=tuple(options), none_of_these=not covered.all())
 
 
+ATTRIBUTES_NOT_KNOWN = 2
+"""Somebody who did not know so many attributes of a thing is not asked about it any more (method, section 5)."""
+
+
 def topics(query: Query) -> frozenset[str]:
     """What somebody does not know who does not know the answer (method, section 5).
 
@@ -192,7 +196,17 @@ def is_refused(query: Query, withdrawn: Collection[str]) -> bool:
     """
     if not withdrawn:
         return False
-    return query.id in withdrawn or any(name in withdrawn for name in (*query.gap_ids, *topics(query)))
+    about = topics(query)
+    if query.id in withdrawn or any(name in withdrawn for name in (*query.gap_ids, *about)):
+        return True
+    return any(_too_many(name, about, withdrawn) for name in query.gap_ids if kind_of(name) is GapKind.TARGET)
+
+
+def _too_many(gap_id: str, about: frozenset[str], withdrawn: Collection[str]) -> bool:
+    """Whether a query would ask somebody who did not know one attribute of a thing about too many others at once."""
+    unknown = [name for name in withdrawn if name.startswith(f"{gap_id}/")]
+    asked = [name for name in about if name.startswith(f"{gap_id}/")]
+    return bool(unknown) and len(unknown) + len(asked) > ATTRIBUTES_NOT_KNOWN
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -10,6 +10,7 @@ from mintpilot.core.gap import PASSABLE, GapKind, KnowledgeGap
 from mintpilot.core.geometry import Bools
 from mintpilot.core.plan import Plan
 from mintpilot.core.query import NO_PART, YES_PART, Query, Question
+from mintpilot.core.tolerances import TOLERANCE
 from mintpilot.core.tree import Mint
 from mintpilot.elicitation.phrases import joined, subject_of, thing_called
 from mintpilot.elicitation.sentences import sentence
@@ -58,7 +59,29 @@ def _consequences(query: Query, about: tuple[KnowledgeGap, ...], mint: Mint | No
         longer = plan.cost_s - min(costs) if plan is not None and costs else 0.0
         settled = all(other_sure for _, other_sure in plans)
         texts.append(f"{text}, {longer:.0f} s longer" if settled and longer >= 1 else text)
-    return tuple(texts)
+    # The likeliest flight may be the same after both answers: then it is told what else an answer makes possible.
+    return tuple(
+        _may_enter(mint, table == part, about) or f"{text}, {_share(mint, table == part, plans[part][0]):.0%} likely"
+        if texts.count(text) > 1
+        else text
+        for part, text in enumerate(texts)
+    )
+
+
+def _may_enter(mint: Mint, agrees: Bools, about: tuple[KnowledgeGap, ...]) -> str:
+    """That regions may be flown through after an answer; empty where no plan that is left does so."""
+    if {gap.kind for gap in about} != {GapKind.OBSTACLE}:
+        return ""
+    left = set(mint.class_of[agrees & (mint.belief.probability > 0)].ravel().tolist())
+    entered = {gap for n in left if n >= 0 and (plan := mint.classes[n].plan) is not None for gap in plan.enters}
+    return f"I may fly through {'it' if len(about) == 1 else 'them'}" if entered & {g.id for g in about} else ""
+
+
+def _share(mint: Mint, agrees: Bools, plan: Plan | None) -> float:
+    """Probability, after an answer, of the plan class with that plan."""
+    held = np.where(agrees, mint.belief.probability, 0.0)
+    number = next(n for n, one in enumerate(mint.classes) if one.plan is plan)
+    return float(held[mint.class_of == number].sum() / max(held.sum(), TOLERANCE))
 
 
 def _left(query: Query, about: tuple[KnowledgeGap, ...], part: int, mint: Mint) -> str:

@@ -112,6 +112,8 @@ def consequence(english: str, tongue: Tongue) -> str:
     if said is None:
         return english
     said = tongue.probably.format(said) if likely else said
+    if likely_share := re.fullmatch(r"(\d+)% likely", extra):
+        return f"{said}, {likely_share[1]} %"
     seconds = re.fullmatch(r"(\d+) s longer", extra)
     return tongue.longer.format(said, seconds[1]) if seconds else said
 

@@ -4,18 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Final
 
 from mintpilot.core.gap import PASSABLE, Belief, GapKind, KnowledgeGap
 from mintpilot.core.geometry import Ints, frozen
 from mintpilot.core.mission import AskingSettings
-from mintpilot.core.query import Answer, Evidence, Query, Reply, topics
+from mintpilot.core.query import ATTRIBUTES_NOT_KNOWN, Answer, Evidence, Query, Reply, topics
 from mintpilot.core.semantic_map import SemanticMap
 from mintpilot.mission.extra_evidence import with_extra_evidence
 from mintpilot.reasoning.belief import condition
-
-ATTRIBUTES_NOT_KNOWN: Final = 2
-"""Somebody who did not know so many attributes of a thing is not asked about it any more (method, section 5)."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

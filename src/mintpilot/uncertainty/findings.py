@@ -82,7 +82,7 @@ def find_gaps(
         gaps += more_gaps
         stops += more_stops
     return Findings(
-        gaps=tuple(sorted(told_apart(gaps, start_m), key=lambda gap: gap.id)),
+        gaps=tuple(sorted(told_apart(gaps, map.frame.box.lo_m), key=lambda gap: gap.id)),
         stops=tuple(_on_layer(stop, map) for stop in stops),
         problems=tuple(dict.fromkeys((*bound.problems, *_heights(task, map)))),
         wishes=tuple(sorted(r.id for r in map.regions if _is_wish(r, wished) and r.passable is Knowledge.OPEN)),
@@ -154,17 +154,18 @@ def _weighed(stop: Stop, task: Task, findings: Findings, prices: Prices, belief:
     return replace(stop, price_s=price_s, chance=chance, step=seek, text=f"look into {gap.description}")
 
 
-def told_apart(gaps: Sequence[KnowledgeGap], start_m: Vec3) -> list[KnowledgeGap]:
-    """The gaps, with words added to those regions and rooms that are called alike: where they are, seen from the drone.
+def told_apart(gaps: Sequence[KnowledgeGap], corner_m: Vec3) -> list[KnowledgeGap]:
+    """The gaps, with words added to those regions and rooms that are called alike: where they are on the map.
 
-    A question must name one thing. Where even that is not enough, decimetres are.
+    Never relative to the drone, which the operator may not see. A question must name one thing. Where even that is not
+    enough, decimetres are.
     """
     said = list(gaps)
     for digits in (0, 1):
         counts = Counter(gap.description for gap in said)
         alike = [g.kind is not GapKind.TARGET and counts[g.description] > 1 for g in said]
         said = [
-            replace(was, description=f"{was.description} {_whereabouts(was.position_m, start_m, digits)}")
+            replace(was, description=f"{was.description} {_whereabouts(was.position_m, corner_m, digits)}")
             if mixed
             else now
             for was, now, mixed in zip(gaps, said, alike, strict=True)
@@ -172,15 +173,15 @@ def told_apart(gaps: Sequence[KnowledgeGap], start_m: Vec3) -> list[KnowledgeGap
     return said
 
 
-def _whereabouts(position_m: Vec3, start_m: Vec3, digits: int) -> str:
+def _whereabouts(position_m: Vec3, corner_m: Vec3, digits: int) -> str:
     parts = []
     for offset, forth, back in (
-        (position_m[0] - start_m[0], "east", "west"),
-        (position_m[1] - start_m[1], "north", "south"),
+        (position_m[0] - corner_m[0], "east", "west"),
+        (position_m[1] - corner_m[1], "north", "south"),
     ):
         if round(abs(offset), digits) > 0:
             parts.append(f"{abs(offset):.{digits}f} m {forth if offset > 0 else back}")
-    return f"{' and '.join(parts)} of the drone" if parts else "at the drone"
+    return f"{' and '.join(parts)} of the map's south-west corner" if parts else "at the map's south-west corner"
 
 
 def _heights(task: Task, map: SemanticMap) -> list[str]:
