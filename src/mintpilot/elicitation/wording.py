@@ -91,6 +91,8 @@ def _left(query: Query, about: tuple[KnowledgeGap, ...], part: int, mint: Mint) 
     gap = about[0]
     chances = mint.belief.marginal(gap.id)
     left = [v for v, p in zip(gap.values, chances, strict=True) if p > 0 and query.part_of({gap.id: v}) == part]
+    if len(left) == 1:
+        return f"I probably fly to {thing_called(gap, left[0])}"
     if len(left) <= MOST_NAMED:
         return f"I ask further: {joined([thing_called(gap, value) for value in left], 'or')}"
     return f"I ask further: {len(left)} {'of them' if part == YES_PART else 'others'} are left"
