@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from mintpilot.core.errors import InputError
@@ -13,11 +13,12 @@ from mintpilot.core.observation import RegionKind
 from mintpilot.core.plan import PRICE_S, PlanningProblem, Stop, VehicleLimits
 from mintpilot.core.semantic_map import Knowledge, Region, SemanticMap
 from mintpilot.core.task import Task
+from mintpilot.uncertainty.describing import describe, place
 from mintpilot.uncertainty.gaps import obstacle_gaps, presence_gaps
 from mintpilot.uncertainty.keep_away import PREFIX
 from mintpilot.uncertainty.matching import Standpoint
 from mintpilot.uncertainty.targets import PERSON, bind
-from mintpilot.uncertainty.things import things_of
+from mintpilot.uncertainty.things import Thing, things_of
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -126,10 +127,11 @@ def frame_problem(
             f"nothing of '{task.instruction}' can be done: {' '.join(findings.problems)} "
             "Name something that was seen, or look at more of the place first."
         )
+    called = _called(things_of(map))
     return PlanningProblem(
         map=map,
         start_m=start_m,
-        stops=tuple(_weighed(stop, task, findings, prices or Prices(), belief) for stop in findings.stops),
+        stops=tuple(_weighed(stop, task, findings, prices or Prices(), belief, called) for stop in findings.stops),
         gaps=findings.gaps,
         limits=limits,
         finished=finished,
@@ -137,7 +139,21 @@ def frame_problem(
     )
 
 
-def _weighed(stop: Stop, task: Task, findings: Findings, prices: Prices, belief: Belief | None) -> Stop:
+def _called(things: Sequence[Thing]) -> dict[str, str]:
+    """Words for each thing, by id: what it is and what it stands next to; where needed its place in metres."""
+    words = {thing.id: describe(thing) + place(thing, things) for thing in things}
+    counts = Counter(words.values())
+    return {
+        thing.id: words[thing.id]
+        if counts[words[thing.id]] == 1
+        else f"{words[thing.id]} at x {thing.position_m[0]:.1f} m, y {thing.position_m[1]:.1f} m"
+        for thing in things
+    }
+
+
+def _weighed(
+    stop: Stop, task: Task, findings: Findings, prices: Prices, belief: Belief | None, called: Mapping[str, str]
+) -> Stop:
     """The stop with its price, and the probability that it is needed."""
     if not stop.optional:
         subgoal = task.subgoals[int(stop.id.split(":")[1]) - 1]
@@ -145,7 +161,7 @@ def _weighed(stop: Stop, task: Task, findings: Findings, prices: Prices, belief:
         own_s = next((p for p in (subgoal.price_s, of_kind_s) if p is not None), prices.usual_s)
         number, named = int(stop.id.split(":")[1]), stop.id.split(":")[2:]
         step = task.step_for(number)
-        text = f"go to {named[0]}" if step.action == "seek" and named else step.text
+        text = f"go to {called.get(named[0], named[0])}" if step.action == "seek" and named else step.text
         return replace(stop, price_s=own_s, step=step.n, text=text)
     gap = next(gap for gap in findings.gaps if gap.id == stop.gap)
     chance = belief.probability_of(gap.id, PRESENT) if belief else gap.prior[gap.values.index(PRESENT)]
