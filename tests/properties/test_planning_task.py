@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import dijkstra
@@ -197,8 +197,14 @@ def space_of(problem: PlanningProblem, planner: GridPlanner | LazyPlanner | None
         return None
 
 
+HOME_IN_A_REGION = random_problem((1, 6, 6), 2, 0, 2, 14337)
+ONLY_WAY_HOME_IN_TIME_IS_OPEN = random_problem((1, 6, 6), 3, 1, 1, 407517)
+
+
 @settings(deadline=None, max_examples=50)
 @given(problem=problems, seed=st.integers(0, 1000))
+@example(problem=HOME_IN_A_REGION, seed=0)
+@example(problem=ONLY_WAY_HOME_IN_TIME_IS_OPEN, seed=3)
 def test_plans_equal_brute_force(problem: PlanningProblem, seed: int) -> None:
     space, oracle = space_of(problem), Oracle(problem)
     everything = oracle.hypotheses(Assumptions())

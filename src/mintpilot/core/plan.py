@@ -203,7 +203,7 @@ class Plan:
     relies_on: frozenset[str]
     """Ids of gaps, open under the assumptions it was planned with, that it depends on. Empty for a cautious plan."""
     enters: frozenset[str]
-    """Ids of all obstacle gaps whose regions it flies through, open or not."""
+    """Ids of all obstacle gaps whose regions it flies through, open or not; on the way home, too, where it returns."""
     binds: tuple[tuple[str, str], ...] = ()
     """(gap id, value) chosen for each target gap, sorted."""
     skips: frozenset[str] = frozenset()

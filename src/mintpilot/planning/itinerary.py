@@ -9,7 +9,7 @@ import numpy as np
 
 from mintpilot.core.errors import InfeasibleError, MissionError
 from mintpilot.core.gap import PRESENT, GapKind
-from mintpilot.core.geometry import Floats, Ints
+from mintpilot.core.geometry import Floats, Ints, Vec3
 from mintpilot.core.plan import LeftUndone, Leg, Plan, PlanningProblem, Site, Stop
 from mintpilot.planning.approach import approach_cell
 from mintpilot.planning.legs import Cell3
@@ -63,7 +63,13 @@ class Itinerary:
         return self.places[stop.id, site.value] if site else None
 
     def plan(
-        self, route: Route, stops: Sequence[Stop], left: tuple[LeftUndone, ...], values: Mapping[str, str]
+        self,
+        route: Route,
+        stops: Sequence[Stop],
+        left: tuple[LeftUndone, ...],
+        values: Mapping[str, str],
+        *,
+        homeward: int = 0,
     ) -> Plan:
         """A route through these stops as a plan in metres and seconds, which relies on nothing yet.
 
@@ -72,6 +78,7 @@ class Itinerary:
             stops: those that are done.
             left: those that are not, though they are needed or may be.
             values: of the target gaps.
+            homeward: bit set of the regions that the way home enters.
         """
         cruise = self.problem.limits.cruise_mps
         done = {stop.id for stop in stops}
@@ -93,7 +100,7 @@ class Itinerary:
             legs=tuple(legs),
             cost_s=float(sum(leg.duration_s for leg in legs)),
             relies_on=frozenset(),
-            enters=frozenset(g.id for r, g in enumerate(self.terrain.gaps) if route.mask >> r & 1),
+            enters=frozenset(g.id for r, g in enumerate(self.terrain.gaps) if (route.mask | homeward) >> r & 1),
             binds=tuple(sorted((t, v) for t, v in values.items() if any(s.gap == t for s in stops))),
             skips=frozenset(s.gap for s in self.optional if s.id not in looked_at),
             leaves_undone=left,
@@ -138,13 +145,23 @@ def itinerary_of(problem: PlanningProblem, terrain: Terrain) -> Itinerary:
         optional=tuple(sorted((s for s in problem.stops if s.optional), key=lambda s: s.id)),
         targets=tuple(sorted({s.gap for s in ordered if kinds.get(s.gap, GapKind.PRESENCE) is not GapKind.PRESENCE})),
         places=places,
-        home=None if problem.home_m is None else _cell(approach_cell(terrain, Site(position_m=problem.home_m))),
+        home=None if problem.home_m is None else _home(terrain, problem.home_m),
     )
 
 
 def needed_value(stop: Stop) -> str:
     """The value of its presence gap under which an optional stop must be visited."""
     return stop.sites[0].value or PRESENT
+
+
+def _home(terrain: Terrain, home_m: Vec3) -> Cell3 | None:
+    """The very cell of the place to return to, inside an open region too; one beside it where it cannot be flown to."""
+    cell = terrain.frame.cells_of(np.array([home_m]))[0]
+    if terrain.frame.is_flat:
+        cell[0] = 0
+    if terrain.frame.contains(cell[None])[0] and terrain.reachable[tuple(cell)]:
+        return _cell(cell)
+    return _cell(approach_cell(terrain, Site(position_m=home_m)))
 
 
 def _cell(cell: Sequence[int] | Ints | None) -> Cell3 | None:

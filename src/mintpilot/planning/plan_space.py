@@ -177,4 +177,4 @@ class GridPlanSpace(PlanSpace):
         if best is None:
             return None
         _, found, values = best
-        return self.itinerary.plan(found.route, found.stops, found.left, values)
+        return self.itinerary.plan(found.route, found.stops, found.left, values, homeward=found.homeward)

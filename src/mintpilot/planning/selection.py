@@ -32,6 +32,8 @@ class Selection:
     """Those that are not, in the order of the problem."""
     left_s: float
     """Their prices, those of optional stops by their chance, seconds."""
+    homeward: int = 0
+    """Bit set of the regions that the way home enters."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -122,7 +124,22 @@ class Selector:
             route=route,
             left=left,
             left_s=float(sum(one.stop.price_s * one.stop.chance for one in left)),
+            homeward=self._homeward(found, numbers, route, blocked, uncertain),
         )
+
+    def _homeward(self, found: _Reachable, numbers: Sequence[int], route: Route, blocked: int, uncertain: int) -> int:
+        """The regions that the way home enters: as few uncertain ones as the battery allows."""
+        if self._itinerary.problem.home_m is None or self._itinerary.home is None or not route.order:
+            return 0
+        left_s = self.battery_s - self._route_s(found, numbers, route)
+        last = found.places[numbers[route.order[-1]]]
+        ways = [
+            way
+            for way in self._legs.between(last, self._itinerary.home).paths
+            if not way.mask & blocked and way.cost * self._itinerary.edge_s <= left_s + TOLERANCE
+        ]
+        rank = lambda way: ((way.mask & uncertain).bit_count(), round(way.cost, 9), way.mask)  # noqa: E731
+        return min(ways, key=rank).mask if ways else 0
 
     def _reachable(self, wanted: Sequence[Stop], values: Mapping[str, str], blocked: int) -> _Reachable:
         here = self._itinerary.start
