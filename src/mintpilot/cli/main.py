@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Sequence
+from io import TextIOWrapper
 from pathlib import Path
 from typing import Annotated, Literal, TypeAlias
 
@@ -11,7 +12,7 @@ from cyclopts import App, CycloptsError, Parameter, validators
 
 from mintpilot import __version__
 from mintpilot.cli.bench import bench
-from mintpilot.cli.exits import EPILOGUE, ExitCode, fail, guarded
+from mintpilot.cli.exits import EPILOGUE, ExitCode, fail, guarded, verdict_on
 from mintpilot.cli.exporting import export
 from mintpilot.cli.interrupts import listen
 from mintpilot.cli.logs import log, runs
@@ -476,12 +477,16 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Runs the program with these words (default: those of the command line); returns its exit code."""
     words = list(sys.argv[1:] if arguments is None else arguments)
     listen()
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, TextIOWrapper):
+            stream.reconfigure(errors="replace")  # a narrow encoding must not end a flight
     try:
         code = app(words, exit_on_error=False, print_error=False)
     except CycloptsError as error:
         return fail(f"{error}; see mintpilot --help", as_json="--json" in words)
-    except KeyboardInterrupt:
-        return ExitCode.INTERRUPTED
+    except KeyboardInterrupt as stopped:
+        code, message = verdict_on(stopped)
+        return fail(message, as_json="--json" in words, code=code)
     return int(code or 0)
 
 

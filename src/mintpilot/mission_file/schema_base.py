@@ -40,6 +40,10 @@ Several: TypeAlias = Annotated[tuple[T, ...], BeforeValidator(_as_tuple)]
 """A list in the file."""
 Probability: TypeAlias = Annotated[float, Field(ge=0, le=1)]
 Positive: TypeAlias = Annotated[float, Field(gt=0)]
+Seconds: TypeAlias = Annotated[float, Field(ge=0, le=1e6)]
+"""Up to eleven days."""
+Metres: TypeAlias = Annotated[float, Field(ge=0, le=1e3)]
+"""Of a vehicle or a distance kept from something."""
 NotNegative: TypeAlias = Annotated[float, Field(ge=0)]
 Name: TypeAlias = Annotated[str, Field(min_length=1, max_length=100, pattern=r"^[A-Za-z0-9][A-Za-z0-9_.-]*$")]
 """Letters, digits, ``-``, ``_`` and ``.``: safe in file names, reports and answers."""
