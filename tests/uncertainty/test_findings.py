@@ -10,8 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mintpilot.core.errors import InputError
-from mintpilot.core.gap import ABSENT, BLOCKED, PASSABLE, PRESENT, GapKind, KnowledgeGap
-from mintpilot.core.observation import RegionKind
+from mintpilot.core.gap import ABSENT, BLOCKED, NOWHERE, PASSABLE, PRESENT, GapKind, KnowledgeGap
+from mintpilot.core.observation import NameGuess, RegionKind
 from mintpilot.core.plan import VehicleLimits
 from mintpilot.core.semantic_map import Knowledge
 from mintpilot.core.task import Action, Avoidance, Reference, SubGoal, Task
@@ -51,6 +51,25 @@ def test_several_matches_are_a_target_gap_with_candidates_told_apart() -> None:
     assert (deliver.id, deliver.gap, deliver.sites[0].label) == ("deliver:2", "", "person-1")
     assert deliver.sites[0].reach_m == pytest.approx(1.5)
     assert findings.problems == ()
+
+
+@pytest.mark.parametrize("sure", [0.2, 0.5, 0.9])
+def test_one_match_of_a_weak_name_is_asked_about_and_may_be_none_of_them(sure: float) -> None:
+    weak = replace(RED, names=(NameGuess(label="box", probability=sure),))
+    (gap,) = find_gaps(world([weak, PERSON]), MEDICINE, start_m=START_M).gaps
+    assert gap.values == ("box-1", *NOWHERE)
+    assert gap.prior == pytest.approx((0.9 * sure, 0.9 * (1 - sure), 0.1))
+    assert [c.id for c in gap.candidates] == ["box-1"]
+
+
+def test_a_sure_name_is_bound_and_among_several_the_weak_ones_leave_none_of_them() -> None:
+    sure = replace(RED, names=(NameGuess(label="box", probability=0.97),))
+    assert find_gaps(world([sure, PERSON]), MEDICINE, start_m=START_M).gaps == ()
+    weak = replace(BLUE, names=(NameGuess(label="box", probability=0.4),))
+    (gap,) = find_gaps(world([sure, weak, PERSON]), MEDICINE, start_m=START_M).gaps
+    assert gap.values == ("box-1", "box-2", *NOWHERE)
+    assert gap.prior[0] > gap.prior[1] > 0
+    assert gap.prior[2] < 0.03
 
 
 def test_one_match_is_bound_without_a_gap() -> None:

@@ -11,12 +11,12 @@ import numpy as np
 from mintpilot.assembly.perceiving import Seeing, make_perception, remarks_of
 from mintpilot.assembly.seen_report import GapSeen, SeenReport, gap_seen, report_of
 from mintpilot.core.errors import InputError, MapError, RecordError
+from mintpilot.core.gap import NONE_OF_THEM, NOT_YET_SEEN
 from mintpilot.core.geometry import Floats, GridFrame, Vec3
 from mintpilot.core.observation import Frame
 from mintpilot.core.plan import VehicleLimits
 from mintpilot.core.ports import FrameSource, Perception
-from mintpilot.core.semantic_map import MapObject, SemanticMap
-from mintpilot.core.task import Reference
+from mintpilot.core.semantic_map import SemanticMap
 from mintpilot.frames.aligned import AlignedFrames
 from mintpilot.language.instruction import parse_instruction
 from mintpilot.mapping.builder import MapBuilder
@@ -24,7 +24,8 @@ from mintpilot.mapping.settings import MappingSettings
 from mintpilot.mission_file.seen_map import save_map
 from mintpilot.uncertainty.doubts import doubtful_people, referents, said_of
 from mintpilot.uncertainty.findings import find_gaps
-from mintpilot.uncertainty.things import stands_for
+from mintpilot.uncertainty.matching import asked_name
+from mintpilot.uncertainty.things import things_of
 
 REACH_M = 8.0
 """Depth beyond this places no surface."""
@@ -120,11 +121,11 @@ def gaps_of(map_: SemanticMap, instruction: str | None, *, start_m: Vec3) -> tup
             continue
         wanted = {a.value for a in meant.attributes if a.name in ("", "colour", "size")}
         fitting = [o for o in map_.objects if not _contradicts(o.values("colour") | o.values("size"), wanted)]
-        found = referents(_called(meant, map_.objects), fitting)
+        found = referents(asked_name(meant, things_of(map_)), fitting)
         named = {o.id: said_of(o) for o in map_.objects}
         values = {i: round(p, 4) for i, p in found.things} | {
-            "none of them": round(found.none_of_them, 4),
-            "not yet seen": round(found.not_yet_seen, 4),
+            NONE_OF_THEM: round(found.none_of_them, 4),
+            NOT_YET_SEEN: round(found.not_yet_seen, 4),
         }
         gaps.append(
             GapSeen(
@@ -137,13 +138,6 @@ def gaps_of(map_: SemanticMap, instruction: str | None, *, start_m: Vec3) -> tup
             )
         )
     return gaps, list(findings.problems)
-
-
-def _called(meant: Reference, objects: Sequence[MapObject]) -> str:
-    """The name that a phrase asks for: ``medicine box`` where something may be so called, else its noun alone."""
-    whole = " ".join((*(a.value for a in meant.attributes if not a.name), meant.label))
-    named = {g.label for o in objects for g in o.names} | {o.label for o in objects}
-    return whole if any(stands_for(name, whole) for name in named) else meant.label
 
 
 _COLOURS = frozenset({"red", "orange", "yellow", "green", "blue", "purple", "white", "grey", "black", "brown"})

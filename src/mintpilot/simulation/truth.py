@@ -7,7 +7,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from mintpilot.core.gap import ABSENT, BLOCKED, PASSABLE, PRESENT, Candidate, GapKind, KnowledgeGap
+from mintpilot.core.gap import ABSENT, BLOCKED, NONE_OF_THEM, PASSABLE, PRESENT, Candidate, GapKind, KnowledgeGap
 from mintpilot.core.geometry import Box, Vec3
 from mintpilot.core.ports import TruthOracle
 from mintpilot.simulation.scene import Scene
@@ -29,7 +29,7 @@ class SceneTruth(TruthOracle):
       means blocked.
     * Presence gap: the nearest closed room says whether somebody is inside.
     * Target gap: the candidate at the first of `Scene.goal_objects` that is among the candidates; without one, the
-      candidate at a person who must be found.
+      candidate at a person who must be found; where the phrase may mean none of them, and none is there, that.
 
     Args:
         scene: the world.
@@ -83,7 +83,7 @@ class SceneTruth(TruthOracle):
             found = [c for c in candidates if stands_for[c.id] == name]
             if found:
                 return min(found, key=lambda c: (math.dist(c.position_m, places[name]), c.id)).id
-        return None
+        return NONE_OF_THEM if wanted else None
 
     def _places(self) -> list[tuple[str, Vec3]]:
         """Middles of all things and persons."""
