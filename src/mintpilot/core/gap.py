@@ -108,6 +108,8 @@ class KnowledgeGap:
     """Where its subject is (for a target gap: the middle of the candidates)."""
     candidates: tuple[Candidate, ...] = ()
     """For a target gap: one per value that is a thing, in the same order."""
+    is_thing: bool = False
+    """For a presence gap: its subject is a thing that may be somebody, not a place that may hold somebody."""
 
     def __post_init__(self) -> None:
         if not self.values or len(set(self.values)) != len(self.values):

@@ -131,6 +131,8 @@ def _flight(plan: Plan | None, sure: bool, about: tuple[KnowledgeGap, ...], left
         visited = [g for g in about if g.id not in plan.skips | undone]
         if len(about) == 1 and about[0].id in undone:
             return f"{i} cannot reach it, and do what else I can"
+        if about[0].is_thing and visited:
+            return f"{i} fly to {'it' if len(about) == 1 else joined([subject_of(g) for g in visited], 'and')}"
         if not visited:
             return f"{i} fly past it" if len(about) == 1 else f"{i} fly past them"
         if len(about) == 1:
@@ -154,7 +156,8 @@ def _general(query: Query, about: tuple[KnowledgeGap, ...], part: int) -> str:
     if kinds == {GapKind.OBSTACLE} and all(PASSABLE in g.values for g in about):
         return f"I may fly through {it}" if yes else f"I fly around {it}"
     if kinds == {GapKind.PRESENCE}:
-        return "I look inside" if yes else f"I fly past {it}"
+        there = f"I fly to {it}" if about[0].is_thing else "I look inside"
+        return there if yes else f"I fly past {it}"
     if kinds == {GapKind.TARGET}:
         return "I take it that you mean that" if yes else "I take it that you mean another"
     return "I plan with this" if yes else "I plan with the opposite"

@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from mintpilot.core.gap import ABSENT, PRESENT, GapKind, KnowledgeGap
+from mintpilot.core.gap import ABSENT, PRESENT, GapKind, KnowledgeGap, presence_id
 from mintpilot.core.observation import OBJECT
 from mintpilot.core.semantic_map import MapObject
 from mintpilot.uncertainty.things import Thing, stands_for
@@ -34,21 +34,31 @@ class Referents:
     """That it was not in any picture."""
 
 
+def is_doubtful_person(thing: MapObject | Thing) -> bool:
+    """Whether it is to be asked if a thing is a person."""
+    return DOUBTFUL[0] <= _person(thing) < DOUBTFUL[1]
+
+
+def _person(thing: MapObject | Thing) -> float:
+    return next((g.probability for g in thing.names if g.label == PERSON), 0.0)
+
+
 def doubtful_people(objects: Sequence[MapObject]) -> list[KnowledgeGap]:
     """One gap for each thing that may be a person: a doubtful person is asked about, never left out in silence."""
     gaps = []
     for thing in sorted(objects, key=lambda o: o.id):
-        chance = next((g.probability for g in thing.names if g.label == PERSON), 0.0)
-        if DOUBTFUL[0] <= chance < DOUBTFUL[1]:
+        chance = _person(thing)
+        if is_doubtful_person(thing):
             gaps.append(
                 KnowledgeGap(
-                    id=f"presence:{thing.id}",
+                    id=presence_id(thing.id),
                     kind=GapKind.PRESENCE,
                     subject=thing.id,
                     description=said_of(thing),
                     values=(PRESENT, ABSENT),
                     prior=(chance, 1.0 - chance),
                     position_m=thing.position_m,
+                    is_thing=True,
                 )
             )
     return gaps

@@ -11,8 +11,8 @@ from mintpilot.core.gap import NOWHERE, Candidate, GapKind, KnowledgeGap, target
 from mintpilot.core.plan import Site, Stop
 from mintpilot.core.task import Action, Reference, SubGoal, Task
 from mintpilot.uncertainty.describing import describe_apart, seen
-from mintpilot.uncertainty.doubts import SURE_NAME, referents
-from mintpilot.uncertainty.gaps import LOOK_REACH_M
+from mintpilot.uncertainty.doubts import SURE_NAME, is_doubtful_person, referents
+from mintpilot.uncertainty.gaps import LOOK_REACH_M, look_id
 from mintpilot.uncertainty.matching import Standpoint, asked_name, match, name_probability
 from mintpilot.uncertainty.things import ROOM, Thing, middle_m, nearest_first, synonyms
 
@@ -32,6 +32,8 @@ class Binding:
     view: Standpoint
     finished: Collection[str]
     """Ids of stops that are left out."""
+    asked_for: Collection[str] = ()
+    """Ids of things that are asked about by themselves: where all people are sought, those who may be none."""
     stops: list[Stop] = field(default_factory=list)
     gaps: dict[str, KnowledgeGap] = field(default_factory=dict)
     problems: list[str] = field(default_factory=list)
@@ -60,7 +62,12 @@ class Binding:
         Nobody in sight is no problem for who looks for anybody.
         """
         found = self._found(reference, told=not (reference.every and reference.label == PERSON))
-        left = [t for t in found if not t.searched and f"{stop_id}:{t.id}" not in self.finished]
+        left = [
+            t
+            for t in found
+            if not (t.searched or t.id in self.asked_for)
+            and not {f"{stop_id}:{t.id}", look_id(t.id)} & set(self.finished)
+        ]
         here_m = self.stops[-1].sites[0].position_m if self.stops else self.view.start_m
         for thing in nearest_first(left, here_m):
             self.stops.append(_stop(f"{stop_id}:{thing.id}", subgoal, (_site(thing, subgoal),)))
@@ -86,7 +93,8 @@ def bind(task: Task, things: Sequence[Thing], view: Standpoint, *, finished: Col
     of a sub-goal that means every match there is one stop for each (``go:1:person-2``), nearest first. A pronoun means
     what the sub-goal before it meant. The same reference used twice is one gap.
     """
-    binding = Binding(things=things, view=view, finished=finished)
+    doubtful = {t.id for t in things if task.seeks_people and is_doubtful_person(t)}
+    binding = Binding(things=things, view=view, finished=finished, asked_for=doubtful)
     numbers: dict[Reference, int] = {}
     meant: Reference | None = None
     for number, subgoal in enumerate(task.subgoals, start=1):
