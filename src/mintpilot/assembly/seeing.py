@@ -31,6 +31,7 @@ def see(
     name: str,
     perception: str = "segments",
     namers: Sequence[str] = (),
+    calibration: Path | None = None,
     instruction: str | None = None,
     out: Path | None = None,
 ) -> SeenReport:
@@ -41,6 +42,7 @@ def see(
         name: what the report calls it.
         perception: registered name of what makes objects of pictures.
         namers: registered names of who names what is found; empty: the perception's own way.
+        calibration: file of measured confidences of the namers; None: ours.
         instruction: gaps are then those that bear on it, too.
         out: folder that becomes a world for missions (``world: {seen: DIR}``); None: nothing is written.
 
@@ -55,7 +57,13 @@ def see(
     setting = aligned.setting
     wanted = wanted_nouns(instruction)
     seeing = make_perception(
-        Seeing(perception=perception, namers=tuple(namers), wanted=wanted, floor_m=setting.floor_m)
+        Seeing(
+            perception=perception,
+            namers=tuple(namers),
+            wanted=wanted,
+            floor_m=setting.floor_m,
+            calibration=calibration,
+        )
     )
     map_ = mapped(frames, seeing, setting.floor_m)
     x, y, z = (float(v) for v in frames[0].world_from_camera[:3, 3])

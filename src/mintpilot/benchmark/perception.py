@@ -13,7 +13,6 @@ from mintpilot.benchmark.perception_scenes import SeenRoom, seen_rooms
 from mintpilot.core.geometry import Vec3
 from mintpilot.core.observation import OBJECT
 from mintpilot.core.ports import Perception
-from mintpilot.core.semantic_map import MapObject
 from mintpilot.simulation.furnished.shapes import Shown
 from mintpilot.simulation.furnished.style import Style
 from mintpilot.uncertainty.doubts import PERSON, is_doubtful_person
@@ -92,7 +91,7 @@ def count(seen: SeenRoom, tally: Tally) -> None:
     tally.rooms += 1
     objects = seen.map.objects
     everything = (*seen.visible, *seen.hidden)
-    owner = {o.id: _owner(o, everything) for o in objects}
+    owner = {o.id: owner_of(o.position_m, everything) for o in objects}
     for one in seen.visible:
         if one.kind == "furniture":
             continue
@@ -130,16 +129,16 @@ def count(seen: SeenRoom, tally: Tally) -> None:
 def rows_of(tally: Tally) -> Iterator[PerceptionRow]:
     """The figures, with intervals and what is to be reached."""
     postures = sorted(k for k in tally.could if k.startswith("person "))
-    yield _share("people found, questions counted", *_sum(tally, postures), "0.95")
+    yield share_row("people found, questions counted", *_sum(tally, postures), "0.95")
     for kind in postures:
-        yield _share(f"  {kind.removeprefix('person ')}", tally.found[kind], tally.could[kind], "")
-    yield _share("doors found", tally.found["door"], tally.could["door"], "0.95")
-    yield _share("things found within 0.3 m", tally.found["thing"], tally.could["thing"], "0.95")
+        yield share_row(f"  {kind.removeprefix('person ')}", tally.found[kind], tally.could[kind], "")
+    yield share_row("doors found", tally.found["door"], tally.could["door"], "0.95")
+    yield share_row("things found within 0.3 m", tally.found["thing"], tally.could["thing"], "0.95")
     off = sorted(tally.off_m)
     if off:
         yield PerceptionRow(name="distance from a thing's middle, median, m", value=off[len(off) // 2], n=len(off))
-    yield _share("claimed names that are right", sum(tally.claims), len(tally.claims), "0.8")
-    yield _share("colours that are right", sum(tally.colours), len(tally.colours), "")
+    yield share_row("claimed names that are right", sum(tally.claims), len(tally.claims), "0.8")
+    yield share_row("colours that are right", sum(tally.colours), len(tally.colours), "")
     error = calibration_error(tally.named)
     yield PerceptionRow(name="calibration error of the likeliest names", value=error, n=len(tally.named), wanted="0.1")
     wanted = {"person": "0.05", "question about a person": "", "door": "", "fire": "0", "smoke": "0", "thing": ""}
@@ -162,7 +161,8 @@ def calibration_error(named: Sequence[tuple[float, bool]]) -> float:
     return total / max(1, len(named))
 
 
-def _share(name: str, count: int, n: int, wanted: str) -> PerceptionRow:
+def share_row(name: str, count: int, n: int, wanted: str) -> PerceptionRow:
+    """The row of a share, with Wilson's interval."""
     low, high = wilson(count, n)
     return PerceptionRow(name=name, value=count / max(1, n), n=n, low=low, high=high, wanted=wanted)
 
@@ -186,9 +186,9 @@ def _doors(seen: SeenRoom) -> list[Vec3]:
     return shut + [o.position_m for o in seen.map.objects if o.label == "door"]
 
 
-def _owner(thing: MapObject, everything: Sequence[Shown]) -> Shown | None:
-    """What an object shows: that within whose extent, grown a little, its middle lies; the smallest of several."""
-    inside = [one for one in everything if _holds(one, thing.position_m)]
+def owner_of(position_m: Vec3, everything: Sequence[Shown]) -> Shown | None:
+    """What an object at a place shows: that within whose extent, grown a little, that lies; the smallest of several."""
+    inside = [one for one in everything if _holds(one, position_m)]
     return min(inside, key=lambda one: math.prod(max(e, 0.01) for e in one.box_m.size_m), default=None)
 
 
