@@ -147,6 +147,7 @@ def run_mission(
         perception=perception or file.perception.use,
         briefs=briefs,
         namers=tuple(file.perception.namers) if perception in (None, file.perception.use) else (),
+        calibration=_calibration(file, folder) if perception in (None, file.perception.use) else None,
     )
     with talk_for(file.language, llm=llm, lang=lang) as talk:
         world = build_world(file, base=folder, seed=seed, parse=talk.parse)
@@ -229,3 +230,7 @@ def _operator(operator: AnyOperator, world: World, file: MissionFile, talk: Talk
     if operator != "scripted":
         raise UnknownNameError("operator", operator, ["scripted"])
     return scripted_operator(world, file.operator)
+
+
+def _calibration(file: MissionFile, folder: Path) -> Path | None:
+    return None if file.perception.calibration is None else folder / file.perception.calibration

@@ -307,6 +307,7 @@ def see(
     longest: Annotated[int, Parameter(validator=validators.Number(gte=1))] = 200,
     perception: str = "segments",
     namer: Annotated[list[str], Parameter(name="--namer", negative="")] = [],  # noqa: B006
+    calibration: Path | None = None,
     seed: Seed = None,
     out: Path | None = None,
     json: Json = False,
@@ -329,6 +330,7 @@ def see(
         perception: Who makes objects of pictures: segments, geometric, or a plug-in's.
         namer: Who names what segments finds: geometry, ocr (text on things), vision (a vision-language model at
             MINTPILOT_VLM_URL), or a plug-in's; may be given several times. Default: geometry.
+        calibration: Measured confidences of the namers, as mintpilot bench perception --calibrate writes them.
         seed: Of simulated sources. Default: 0.
         out: Folder for map and report.
         json: Print one JSON object, and nothing else, on standard output.
@@ -350,7 +352,14 @@ def see(
     )
     return guarded(
         lambda: see_pictures(
-            source, options, perception=perception, namers=namer, instruction=instruction, out=out, as_json=json
+            source,
+            options,
+            perception=perception,
+            namers=namer,
+            calibration=calibration,
+            instruction=instruction,
+            out=out,
+            as_json=json,
         ),
         as_json=json,
         debug=debug,

@@ -92,6 +92,9 @@ class PerceptionSpec(Spec):
     anywhere), or that of a plug-in; `--perception` overrides it."""
     namers: Several[Name] = ()
     """With `segments`: who names what it finds, e.g. `[geometry, ocr, vision]`; default: by geometry."""
+    calibration: Words | None = None
+    """With `segments`: file of confidences of the namers, as `mintpilot bench perception --calibrate` writes it;
+    relative to the mission file."""
 
 
 class GoalSpec(Spec):
