@@ -94,6 +94,7 @@ class DoubleLoop:
         self.autopilot.step(now_s)
         if self._place is not None:
             self._place.move(now_s, self.autopilot.body)
+        self._hearer.due(now_s)
         for message in self._speaker.due(now_s):
             self._send(message)
         for packet in self._out.due(now_s):
