@@ -1,8 +1,16 @@
 """For all tests."""
 
+import os
 import signal
 
 import pytest
+from hypothesis import settings
+
+settings.register_profile("repeatable", derandomize=True)
+"""For the continuous integration: the same examples each time, so that a change is judged by what it changed."""
+settings.register_profile("searching", print_blob=True)
+"""Other examples each time: what a developer's own runs search through."""
+settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "searching"))
 
 
 def pytest_configure(config: pytest.Config) -> None:

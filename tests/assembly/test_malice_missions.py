@@ -153,7 +153,7 @@ def check(world: World, verdict: Verdict, events: list[object]) -> None:
     assert through <= allowed
     assert all(truth.value_of(gaps[name]) == PASSABLE for name in through)
     assert verdict.outcome not in (Outcome.COLLISION, Outcome.TOXIC_SMOKE, Outcome.LEFT_VOLUME, Outcome.VEHICLE_FAILED)
-    assert len(asked) <= world.mission.asking.max_questions
+    assert len(asked) <= world.mission.asking.question_budget
     assert sum(isinstance(event, MissionEnded) for event in events) == 1
 
 

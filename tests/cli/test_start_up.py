@@ -17,10 +17,12 @@ NEVER = {
     "scipy.optimize",
     "scipy.signal",
     "scipy.stats",
+    "mintpilot.assembly.real_vehicle",
     "mintpilot.benchmark",
     "mintpilot.conformance",
     "mintpilot.mapping.builder",
     "mintpilot.mission.loop",
+    "mintpilot.mission.process_worker",
     "mintpilot.perception",
     "mintpilot.recording.report",
     "mintpilot.recording.run_folder",
@@ -28,6 +30,7 @@ NEVER = {
     "mintpilot.simulation.map_scene",
     "mintpilot.simulation.mujoco_vehicle",
     "mintpilot.simulation.scenarios",
+    "mintpilot.vehicle.mavlink_vehicle",
 }
 NOT_TO_CHECK = {
     "numba",

@@ -80,7 +80,7 @@ def told(situation: Situation, query: Query, answer: Answer | Reply, attempts: t
         withdrawn=after.withdrawn,
         asked=after.asked,
         silent=after.silent,
-        settings=replace(situation.settings, max_questions=max(0, situation.settings.max_questions - 1)),
+        settings=replace(situation.settings, max_questions=max(0, situation.settings.question_budget - 1)),
     )
 
 

@@ -114,6 +114,6 @@ def test_no_model_makes_a_mission_less_safe(name: str) -> None:
     }
     assert entered(world.map, witness.events) <= allowed
     assert verdict.outcome is Outcome.SUCCESS
-    assert len(asked) <= world.mission.asking.max_questions
+    assert len(asked) <= world.mission.asking.question_budget
     assert sum(isinstance(event, MissionEnded) for event in witness.events) == 1
     assert wording.trials or name == "gone" or not asked

@@ -14,7 +14,7 @@ from mintpilot.assembly.registry import BUILT_IN
 from mintpilot.assembly.strategies import make_strategy
 from mintpilot.core.errors import LimitError
 from mintpilot.core.gap import Assumptions, CorrelationGroup
-from mintpilot.core.mission import CriticalityRule
+from mintpilot.core.mission import AskingSettings, CriticalityRule
 from mintpilot.core.ports import Ask, Fly
 from mintpilot.core.query import Reply
 from mintpilot.core.tree import StopReason
@@ -75,7 +75,7 @@ def test_no_answer_couples_more_than_max_joint_values(seed: int, most: int, erro
     situation = open_situation(world, asking)
     rng = np.random.default_rng(seed)
     attempts: tuple[str, ...] = ()
-    for _ in range(asking.max_questions):
+    for _ in range(asking.question_budget):
         decision = MintStrategy().decide(situation)
         if not isinstance(decision, Ask):
             break
@@ -99,3 +99,10 @@ def test_queries_that_the_belief_could_not_take_in_are_not_asked() -> None:
         queries.append([s.query for s in (ask.scored, *ask.alternatives)])
     pairs = [set(names[:2]), set(names[2:])]
     assert all(any(set(q.gap_ids) <= pair for pair in pairs) for q in queries[0])
+
+
+def test_the_budget_follows_the_error_of_answers_unless_one_is_given() -> None:
+    budgets = [AskingSettings(answer_error=error).question_budget for error in (0.0, 0.05, 0.1, 0.2, 0.3, 0.49)]
+    assert budgets == sorted(budgets)
+    assert (budgets[0], budgets[2], budgets[-1]) == (20, 60, 200)
+    assert AskingSettings(answer_error=0.2, max_questions=6).question_budget == 6

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mintpilot.assembly.briefing import briefing_of
-from mintpilot.assembly.real_vehicle import make_vehicle
 from mintpilot.assembly.registry import load
 from mintpilot.assembly.strategies import Argument, make_objective, make_strategy, strategy_label
 from mintpilot.assembly.talk import Talk
@@ -25,7 +24,6 @@ from mintpilot.elicitation.wording import word_question
 from mintpilot.mission.components import MissionComponents
 from mintpilot.mission.deliberation import DeliberationParts
 from mintpilot.mission.map_source import CameraMapSource, GivenMap, MapSource
-from mintpilot.mission.process_worker import ProcessWorker
 from mintpilot.mission_file.schema import OperatorSpec
 from mintpilot.uncertainty.keep_away import with_keep_away
 
@@ -203,6 +201,9 @@ class _Components(AbstractContextManager[MissionComponents]):
 
     def _beside_vehicle(self) -> MissionComponents:
         """A real vehicle on a given map. Nobody judges it, and it ends on the ground."""
+        from mintpilot.assembly.real_vehicle import make_vehicle
+        from mintpilot.mission.process_worker import ProcessWorker
+
         world, choices = self._world, self._choices
         if world.task.needs_confirmation and not any(operator.attended for operator in self._operators):
             raise InputError(

@@ -54,6 +54,12 @@ def setting(
     return field(default=default, metadata={"bounds": bounds})
 
 
+QUESTIONS = 20
+"""Budget of questions where answers are never wrong."""
+MOST_REPEATS = 10
+"""However often answers are wrong, the budget is no more than this many times as large."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AskingSettings:
     """Thresholds and bounds of reasoning and asking, in the symbols of the method.
@@ -92,7 +98,12 @@ class AskingSettings:
         "What a failed mission counts for, in seconds of flight, where expected losses are weighed.",
         least=0,
     )
-    max_questions: int = setting(20, "Budget of questions.", least=0)
+    max_questions: int | None = setting(
+        None,
+        f"Budget of questions. Unset: {QUESTIONS}, times how often a fact must be heard until it is sure where answers "
+        "may be wrong (`answer_error`).",
+        least=0,
+    )
     patience_s: float = setting(30.0, "How long an answer is waited for, seconds.", least=0)
     answer_valid_s: float = setting(
         600.0, "How long a yes for a region counts, seconds; then it is asked again.", least=0
@@ -105,8 +116,24 @@ class AskingSettings:
     def __post_init__(self) -> None:
         for one in fields(self):
             bounds: Bounds = one.metadata["bounds"]
-            if bounds.least is not None:
-                bounds.check(one.name, getattr(self, one.name))
+            value = getattr(self, one.name)
+            if bounds.least is not None and value is not None:
+                bounds.check(one.name, value)
+
+    @property
+    def question_budget(self) -> int:
+        """How many questions may be put in all.
+
+        An answer that is wrong with probability e moves the log odds by (1 - 2e) ln((1 - e) / e) on average; a fact is
+        sure from the odds (1 - alpha_safe) : alpha_safe on, starting from even ones.
+        """
+        if self.max_questions is not None:
+            return self.max_questions
+        if self.answer_error == 0:
+            return QUESTIONS
+        wrong, doubt = self.answer_error, max(self.alpha_safe, self.floor, 1e-6)
+        gained = (1 - 2 * wrong) * math.log((1 - wrong) / wrong)
+        return QUESTIONS * min(MOST_REPEATS, max(1, math.ceil(math.log((1 - doubt) / doubt) / gained)))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -100,4 +100,4 @@ def _with_not_known(withdrawn: frozenset[str], query: Query) -> frozenset[str]:
 
 def remaining_budget(settings: AskingSettings, state: BeliefState) -> AskingSettings:
     """The settings with the questions that were put taken off the budget."""
-    return replace(settings, max_questions=max(0, settings.max_questions - len(state.attempts)))
+    return replace(settings, max_questions=max(0, settings.question_budget - len(state.attempts)))

@@ -23,8 +23,10 @@ def asking_spec() -> Any:
     return create_model("AskingFields", __base__=Spec, **made)
 
 
-def _written(kind: type) -> Any:
+def _written(kind: Any) -> Any:
     """How a value of that type is written in a mission file: choices by their words, names as `Name`."""
+    if not isinstance(kind, type):
+        return kind  # a number that may be left out
     if issubclass(kind, StrEnum):
         return Literal[tuple(choice.value for choice in kind)]
     return Name if kind is str else kind

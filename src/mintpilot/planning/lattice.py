@@ -20,7 +20,7 @@ from numpy.typing import ArrayLike, NDArray
 from mintpilot.core.compiled import compiled
 from mintpilot.core.errors import MapError
 from mintpilot.core.geometry import Bools, Ints, frozen
-from mintpilot.planning.moves import MOVES_2D, MOVES_3D, Moves
+from mintpilot.planning.moves import Moves, grid_moves
 
 Words = NDArray[np.uint64]
 """For each node: bit k is set when move k is allowed, bit 32 + i when the i-th node around it is free."""
@@ -99,7 +99,7 @@ def lattice_of(free: Bools, *, cut_corners: bool = False) -> Lattice:
         raise MapError(f"grid of shape {free.shape}: give flags of shape (nz, ny, nx), none of them 0")
     shape = (free.shape[0], free.shape[1], free.shape[2])
     flat = shape[0] == 1
-    moves = MOVES_2D if flat else MOVES_3D
+    moves = grid_moves(flat=flat)
     if cut_corners:
         moves = moves.cutting_corners()
     padded = np.pad(np.asarray(free, np.uint8), ((0, 0) if flat else (1, 1), (1, 1), (1, 1)))

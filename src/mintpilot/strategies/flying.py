@@ -108,4 +108,4 @@ def questions_left(situation: Situation) -> int:
     """How many more questions the budget allows; 0 once the operator is silent."""
     if situation.silent:
         return 0
-    return situation.settings.max_questions
+    return situation.settings.question_budget
