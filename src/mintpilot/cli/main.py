@@ -447,6 +447,7 @@ app.command(
     help_epilogue=examples(
         "mintpilot export mission.yaml --to plan --out mission.plan",
         "mintpilot export runs/2026-11-28T10-00-00-survey --to wpl --firmware ardupilot",
+        "mintpilot export fire-warehouse --to usd --out warehouse.usda",
     ),
 )
 
