@@ -205,6 +205,7 @@ def test_a_lost_link_is_known_within_two_seconds(flavour, fault, limit_s):
 def test_a_process_that_was_held_up_does_not_call_the_autopilot_silent():
     """It was deaf itself: what came meanwhile is heard after the first tick. Real silence is told all the same."""
     rig = flying()
+    rig.autopilot.parameters.values["COM_OF_LOSS_T"] = 10.0  # the library goes on sending the last set-point
     held_up = replace(rig.seen, message_s=rig.now_s, heartbeat_s=rig.now_s, position_s=rig.now_s)
     rig.now_s += 3.0
     rig._step(Fed(time_s=rig.now_s))
