@@ -203,6 +203,11 @@ class Hearer:
             self._autopilot.fence = fence_of([(item.x, item.y) for item in items])
 
     @property
+    def mission_commands(self) -> tuple[int, ...]:
+        """The commands of the uploaded mission, in order."""
+        return tuple(item.command for item in self._items[0])
+
+    @property
     def fence_corners(self) -> int:
         """How many corners the uploaded fence has."""
         return len(self._items[1])

@@ -57,6 +57,8 @@ class DoubleState:
     """When set-points came."""
     parameters: dict[str, float]
     fence_corners: int
+    mission_commands: tuple[int, ...]
+    """Of the mission that was uploaded."""
     verdict: str
     """What it flew into or out of; empty: nothing."""
 
@@ -115,6 +117,7 @@ class DoubleLoop:
             set_points_s=tuple(self._hearer.set_points_s),
             parameters=dict(a.parameters.values),
             fence_corners=self._hearer.fence_corners,
+            mission_commands=self._hearer.mission_commands,
             verdict=self._place.verdict if self._place is not None else "",
         )
 
