@@ -77,9 +77,7 @@ def fly(path: Path, options: FlightOptions) -> ExitCode:
         try:
             record = run_mission(
                 path,
-                operator=_operators(
-                    options.operator, errors, narrator, served, stack, real=options.vehicle.startswith("mavlink:")
-                ),
+                operator=_operators(options.operator, errors, narrator, served, stack, real="://" in options.vehicle),
                 vehicle=options.vehicle,
                 strategy=options.strategy,
                 strategy_arguments=arguments,
