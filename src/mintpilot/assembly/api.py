@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, TypeAlias, cast
 
 from mintpilot.assembly.components import Choices, VehicleChoice, components_for, deliberation_parts, scripted_operator
 from mintpilot.assembly.deliberation_report import DeliberationReport, deliberation_report
+from mintpilot.assembly.registry import names
 from mintpilot.assembly.strategies import Argument, strategy_label
 from mintpilot.assembly.talk import Talk, talk_for
 from mintpilot.assembly.worlds import World, build_world
@@ -142,7 +143,7 @@ def run_mission(
         strategy=strategy,
         strategy_arguments=_arguments(file, strategy, strategy_arguments),
         vehicle=vehicle_choice(vehicle),
-        address=vehicle if vehicle.startswith(SCHEME) else "",
+        address=vehicle if "://" in vehicle else "",
         accept_failsafes=accept_failsafes,
         perception=perception or file.perception.use,
         briefs=briefs,
@@ -215,8 +216,10 @@ def vehicle_choice(name: str) -> VehicleChoice:
         UnknownNameError: there is none; the known ones are listed.
         InputError: the address of a real vehicle cannot be read.
     """
-    if name.startswith(SCHEME):
-        parse_address(name)  # a wrong one is told before anything is worked out
+    scheme, found, _ = name.partition("://")
+    if found and scheme in names("vehicle"):
+        if name.startswith(SCHEME):
+            parse_address(name)  # a wrong one is told before anything is worked out
         return VehicleChoice.MAVLINK
     simulated = [choice for choice in VehicleChoice if choice is not VehicleChoice.MAVLINK]
     if name not in simulated:

@@ -46,7 +46,7 @@ class VehicleChoice(StrEnum):
     KINEMATIC = "kinematic"
     """Follows trajectories exactly; the map is what a perfect survey would show."""
     MAVLINK = "mavlink"
-    """A real vehicle; the map is given, and there is no camera."""
+    """A real vehicle, over MAVLink or by a plug-in; the map is given, and there is no camera."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -88,7 +88,7 @@ def fly(path: Path, options: FlightOptions) -> ExitCode:
                     served,
                     stack,
                     notes=notes,
-                    real=options.vehicle.startswith("mavlink:"),
+                    real="://" in options.vehicle,
                 ),
                 vehicle=options.vehicle,
                 strategy=options.strategy,

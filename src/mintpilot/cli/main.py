@@ -219,6 +219,7 @@ def vehicle_double(
     port: Annotated[int, Parameter(validator=validators.Number(gte=1, lte=65535))] = 14540,
     fault: Annotated[list[str] | None, Parameter(negative="")] = None,
     mission: Path | None = None,
+    camera: int | None = None,
     seed: Seed = None,
     debug: Flag = False,
 ) -> ExitCode:
@@ -230,12 +231,14 @@ def vehicle_double(
         fault: NAME@SECONDS, what goes wrong, and when; may be given several times. Names: silence, heartbeat,
             refuse-arm, position-lost, position-jump, delay, reorder, duplicate, corrupt, pilot, battery, no-gripper.
         mission: The mission in whose world it flies. Default: nothing is around it.
+        camera: Port for pictures of that world, drawn where the double says it is: the frame source sim://127.0.0.1:PORT.
+            Default: none.
         seed: Of the world, and of what is drawn at random. Default: as the file says.
         debug: Show the traceback of an error.
     """
     from mintpilot.cli.vehicle_double import serve_double
 
-    return guarded(lambda: serve_double(flavour, port, fault or [], mission, seed), as_json=False, debug=debug)
+    return guarded(lambda: serve_double(flavour, port, fault or [], mission, seed, camera), as_json=False, debug=debug)
 
 
 @app.command(
@@ -457,6 +460,7 @@ app.command(
     help_epilogue=examples(
         "mintpilot export mission.yaml --to plan --out mission.plan",
         "mintpilot export runs/2026-11-28T10-00-00-survey --to wpl --firmware ardupilot",
+        "mintpilot export fire-warehouse --to usd --out warehouse.usda",
     ),
 )
 
