@@ -53,9 +53,12 @@ def believed_world(world: World, condition: Condition) -> World:
 def asking_for(
     settings: AskingSettings, experiment: Experiment, condition: Condition, method: Method
 ) -> AskingSettings:
-    """The settings that one method decides with: what the drone believes of the answers, and the prices if told."""
+    """The settings that one method decides with: what the drone believes of answers, and the prices if told.
+
+    How long the person takes on average is told, too.
+    """
     error = condition.answer_error if condition.believed_error is None else condition.believed_error
-    told = replace(settings, answer_error=error)
+    told = replace(settings, answer_error=error, reply_s=experiment.think.mean_s)
     if experiment.tell_prices:
         prices = experiment.prices
         told = replace(told, question_price_s=prices.question_s, failure_price_s=prices.failure_s)

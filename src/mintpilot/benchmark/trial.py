@@ -131,7 +131,7 @@ class _Flight:
         asking = asking_for(world.mission.asking, experiment, condition, method)
         world = replace(world, mission=replace(world.mission, asking=asking))
         person = OperatorSpec(
-            answer_error=condition.answer_error, unsure=condition.unsure_rate, latency_s=experiment.think_s
+            answer_error=condition.answer_error, unsure=condition.unsure_rate, latency_s=str(experiment.think)
         )
         choices = Choices(strategy="mint", vehicle=VehicleChoice(experiment.vehicle))
         operator = scripted_operator(world, person)

@@ -49,6 +49,9 @@ class AskQuestion:
     alternatives: tuple[ScoredQuery, ...] = ()
     bound_bits: float | None = None
     """No query whatever could tell more of the plan class than this; None: not worked out."""
+    waits_s: float = float("inf")
+    """How long an answer may be waited for until the cautious plan, with its reserve, must begin to fit the battery,
+    seconds; infinite where there is no such plan, or no end of the battery."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -204,6 +204,8 @@ class Plan:
     """Ids of gaps, open under the assumptions it was planned with, that it depends on. Empty for a cautious plan."""
     enters: frozenset[str]
     """Ids of all obstacle gaps whose regions it flies through, open or not; on the way home, too, where it returns."""
+    home_s: float = 0.0
+    """Flight from its last stop to the start where the drone must return, else 0, seconds; no part of the cost."""
     binds: tuple[tuple[str, str], ...] = ()
     """(gap id, value) chosen for each target gap, sorted."""
     skips: frozenset[str] = frozenset()

@@ -38,7 +38,7 @@ def take_over(t: Transition, reasoning: Reasoning) -> None:
 def put(t: Transition, decision: AskQuestion) -> None:
     """Puts the question; its deadline runs from when it is shown."""
     question = replace(decision.question, id=f"q{t.next_id()}")
-    patience_s = t.state.setup.mission.asking.patience_s
+    patience_s = min(t.state.setup.mission.asking.patience_s, decision.waits_s)
     t.set(
         question=OpenQuestion(
             question=question,
@@ -46,6 +46,7 @@ def put(t: Transition, decision: AskQuestion) -> None:
             asked_s=t.state.clock_s,
             shown_map=t.beliefs.map,
             deadline_s=t.state.clock_s + patience_s,
+            needed_s=t.state.clock_s + decision.waits_s,
         ),
         asked_gaps=t.state.asked_gaps | set(question.query.gap_ids),
         activity=Activity.NONE,
@@ -57,7 +58,7 @@ def shown(t: Transition, event: QuestionShown) -> None:
     """Somebody has the question in front of them."""
     open_ = t.state.question
     if open_ is not None and open_.question.id == event.question and open_.shown_s is None:
-        deadline_s = event.time_s + (open_.deadline_s - open_.asked_s)
+        deadline_s = min(event.time_s + (open_.deadline_s - open_.asked_s), open_.needed_s)
         t.set(question=replace(open_, shown_s=event.time_s, deadline_s=deadline_s))
 
 
@@ -104,9 +105,9 @@ def more_time(t: Transition, event: MoreTimeWanted) -> None:
     if open_.extended:
         t.tell("I cannot wait any longer than that.")
         return
-    patience_s = t.state.setup.mission.asking.patience_s
-    t.set(question=replace(open_, extended=True, deadline_s=open_.deadline_s + patience_s))
-    t.tell(f"I wait {patience_s:.0f} s more.")
+    deadline_s = min(open_.deadline_s + t.state.setup.mission.asking.patience_s, open_.needed_s)
+    t.set(question=replace(open_, extended=True, deadline_s=deadline_s))
+    t.tell(f"I wait {deadline_s - t.state.clock_s:.0f} s more.")
 
 
 def unanswered(t: Transition) -> None:

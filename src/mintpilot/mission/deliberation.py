@@ -32,6 +32,8 @@ from mintpilot.mapping.knowledge import apply_knowledge
 from mintpilot.mission.belief_state import BeliefState, remaining_budget
 from mintpilot.mission.explanations import explanations
 from mintpilot.reasoning.belief import extend
+from mintpilot.reasoning.waiting import longest_wait_s
+from mintpilot.strategies.flying import cautious_plan
 from mintpilot.uncertainty.findings import Findings, Prices, find_gaps, frame_problem
 
 LEAST_ENDURANCE_S = 1e-3
@@ -157,6 +159,7 @@ def decision_of(found: Deliberation, parts: DeliberationParts, explained: frozen
         scored=choice.scored,
         alternatives=choice.alternatives,
         bound_bits=choice.bound_bits,
+        waits_s=longest_wait_s(cautious_plan(situation), situation.problem.limits),
     )
 
 

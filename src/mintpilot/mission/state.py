@@ -95,7 +95,9 @@ class OpenQuestion:
     scored: ScoredQuery
     asked_s: float
     deadline_s: float
-    """When it counts as unanswered, mission clock."""
+    """When it counts as unanswered, mission clock: its patience, or `needed_s`, whichever is first."""
+    needed_s: float = float("inf")
+    """When the cautious plan must begin to fit the battery with its reserve, mission clock."""
     shown_s: float | None = None
     shown_map: SemanticMap | None = None
     """What it speaks of: a yes for a region covers the outline that it has here. None: it speaks of no region."""
