@@ -48,25 +48,40 @@ def all_mutants() -> list[Mutant]:
 
 
 def make_map(tests: list[str]) -> None:
-    """Runs the tests once with coverage, and keeps which test reaches which line."""
+    """Runs the tests once with coverage, and keeps which test reaches which line.
+
+    The contexts are coverage's own, names of test functions: those of pytest-cov stay empty in one process.
+    """
     import coverage
 
     FOLDER.mkdir(parents=True, exist_ok=True)
-    data = FOLDER / "coverage"
-    words = ["-n", "0", "-p", "no:cacheprovider", "--cov=mintpilot", "--cov-context=test", "--cov-report=", *tests]
-    subprocess.run(
-        [sys.executable, "-m", "pytest", *words], cwd=ROOT, env={**os.environ, "COVERAGE_FILE": str(data)}, check=True
-    )
-    found: dict[str, dict[int, list[str]]] = {}
+    data, settings = FOLDER / "coverage", FOLDER / "coverage.ini"
+    settings.write_text(f"[run]\nsource = mintpilot\ndynamic_context = test_function\ndata_file = {data}\n")
+    words = ["run", f"--rcfile={settings}", "-m", "pytest", "-n", "0", "-p", "no:cacheprovider", *tests]
+    subprocess.run([sys.executable, "-m", "coverage", *words], cwd=ROOT, check=True)
     read = coverage.CoverageData(str(data))
     read.read()
+    found: dict[str, dict[int, list[str]]] = {}
     for name in read.measured_files():
         lines = {
-            line: sorted({c.partition("|")[0] for c in contexts if c})
+            line: sorted({where for c in contexts if (where := _test_of(c)) is not None})
             for line, contexts in read.contexts_by_lineno(name).items()
         }
         found[str(Path(name).resolve().relative_to(ROOT))] = {k: v for k, v in lines.items() if v}
+    if not any(found.values()):
+        raise SystemExit("no line was reached by any test: coverage kept no contexts, and mutants would all be alive")
     (FOLDER / "map.json").write_text(json.dumps(found))
+
+
+def _test_of(context: str) -> str | None:
+    """The file and function that pytest runs for one of coverage's contexts; the file alone for a state machine."""
+    parts = context.split(".")
+    for count in range(len(parts) - 1, 0, -1):
+        file = Path("tests", *parts[:count]).with_suffix(".py")
+        if (ROOT / file).is_file():
+            inside = parts[count:]
+            return "::".join([str(file), *inside]) if inside[-1].startswith("test") else str(file)
+    return None
 
 
 def tried(mutant: Mutant, reached: dict[str, dict[str, list[str]]]) -> str:
