@@ -283,6 +283,16 @@ def left_of(undone: LeftUndone) -> Left:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Waiting:
+    """What waiting for answers took."""
+
+    delay_s: float = 0.0
+    """From questions shown to their answers, or to the end of waiting, seconds."""
+    hidden_s: float = 0.0
+    """Of that, what the drone flew meanwhile towards what had to be flown anyway, by its plans, seconds."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Verdict:
     """What really happened, as the simulator saw it; on a real vehicle, as far as it is known."""
 

@@ -239,3 +239,18 @@ class Plan:
     def length_m(self) -> float:
         """Length of the way, metres."""
         return float(sum(leg.length_m for leg in self.legs))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Prospect:
+    """One plan that an open question may come to."""
+
+    probability: float
+    """Of its plan class; 0 for the cautious plan, which is flown when no answer comes."""
+    plan: Plan
+    """From where the question was asked."""
+    free: frozenset[str]
+    """Ids of the obstacle gaps whose regions are passable if it comes to it."""
+    spare_s: float
+    """How much later it may begin and still fit the battery with reserve and way home, seconds, as the question was asked;
+    infinite without an end of the battery."""
