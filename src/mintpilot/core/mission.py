@@ -303,3 +303,4 @@ class Verdict:
     """What was done, in order."""
     left: tuple[Left, ...] = ()
     """What was to be done and was not."""
+    waiting: Waiting = Waiting()

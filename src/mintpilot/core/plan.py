@@ -10,7 +10,7 @@ from enum import StrEnum
 import numpy as np
 
 from mintpilot.core.errors import MissionError
-from mintpilot.core.gap import KnowledgeGap
+from mintpilot.core.gap import Assumptions, KnowledgeGap
 from mintpilot.core.geometry import Floats, Vec3, frozen
 from mintpilot.core.semantic_map import SemanticMap
 from mintpilot.core.task import Action
@@ -249,8 +249,10 @@ class Prospect:
     """Of its plan class; 0 for the cautious plan, which is flown when no answer comes."""
     plan: Plan
     """From where the question was asked."""
+    given: tuple[Assumptions, ...]
+    """Under which answers it is flown: one of these, which exclude each other."""
     free: frozenset[str]
     """Ids of the obstacle gaps whose regions are passable if it comes to it."""
     spare_s: float
-    """How much later it may begin and still fit the battery with reserve and way home, seconds, as the question was asked;
-    infinite without an end of the battery."""
+    """How much later it may begin and still fit the battery with reserve and way home, from when the question was
+    thought of, seconds; infinite without an end of the battery."""

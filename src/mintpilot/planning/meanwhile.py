@@ -27,6 +27,8 @@ from mintpilot.planning.trajectory import plan_trajectory
 
 MAX_FIELDS = 24
 """With more distance fields than this the drone holds: a bound on the work."""
+MAX_CELLS = 1 << 25
+"""The same for the cells of all prospects' costs together."""
 MAX_FREE_ORDER = 3
 """Up to so many stops may be done in another order than the plan's."""
 SETTLING_S = 0.5
@@ -128,13 +130,14 @@ class _Outlook:
         self._wait, self._costs = wait, costs
         self.braking_s = limits.cruise_mps / limits.max_acceleration_mps2
         weights = np.array([p.probability for p in wait.prospects])
-        self.expected: Floats = np.tensordot(weights / weights.sum(), costs, 1)
+        likely = weights > 0  # what has no weight may lie beyond every way
+        self.expected: Floats = np.tensordot(weights[likely] / weights.sum(), costs[likely], 1)
         self._start_s = float(self.expected[here])
         self._here_s = costs[(slice(None), *here)]
         self._lost_s = np.array([wait.asked_s + p.spare_s for p in wait.prospects])
         self._lost_s[weights == 0] = np.inf  # the cautious plan is kept as long as the question is open
         """When holding where it was asked loses each prospect."""
-        self._ends_s = np.array([wait.asked_s + p.spare_s + p.plan.cost_s - _done_s(p, wait) for p in wait.prospects])
+        self._ends_s = np.array([wait.asked_s + p.spare_s + p.plan.cost_s for p in wait.prospects])
         """When each prospect's flight must be over."""
 
     def _kept(self) -> Iterator[tuple[int, Floats]]:
@@ -147,8 +150,7 @@ class _Outlook:
         """Where the drone may be at those times: every prospect fits that holding keeps until then."""
         fits = np.ones(when_s.shape, bool)
         for i, cost in self._kept():
-            fits &= (when_s + cost + self.braking_s + SETTLING_S <= self._ends_s[i]) | (when_s > self._lost_s[i])
-            fits |= cost <= self._here_s[i] - (when_s - self._wait.now_s) + self.braking_s + TOLERANCE
+            fits &= (when_s + cost + SETTLING_S <= self._ends_s[i]) | (when_s > self._lost_s[i])
         return fits
 
     def may_rest(self, when_s: Floats) -> Bools:
@@ -163,14 +165,23 @@ class _Outlook:
         return may
 
     def keeps_to(self, trajectory: Trajectory, cells: tuple[np.ndarray, ...]) -> bool:
-        """Whether a smooth flight through those cells, one for each sample, is as good as its path."""
+        """Whether a smooth flight through those cells, one for each sample, is as good as its path.
+
+        Where it passes between flyable cells nothing is known of the costs; there they hardly differ from those beside.
+        """
         expected = self.expected[cells]
+        between = ~np.isfinite(expected)
+        if between[-1]:
+            return False
         when_s = self._wait.now_s + trajectory.time_s
-        if not (expected <= self._start_s + CURVE_S).all() or not expected[-1] < self._start_s - self.braking_s:
+        if (
+            not (between | (expected <= self._start_s + CURVE_S)).all()
+            or not expected[-1] < self._start_s - self.braking_s
+        ):
             return False
         for i, cost in self._kept():
             along = cost[cells]
-            fine = (along <= self._here_s[i] + CURVE_S) | (when_s + along <= self._ends_s[i]) | (when_s > self._lost_s[i])
+            fine = between | (when_s + along + self.braking_s <= self._ends_s[i]) | (when_s > self._lost_s[i])
             if not fine.all():
                 return False
         return True
@@ -197,7 +208,7 @@ class _Costs:
     def of_prospects(self) -> Floats | None:
         """Shape (prospects, nz, ny, nx), infinite where there is no way; None beyond the bound on fields."""
         places = {(cell, p.free) for p in self._wait.prospects for _, cell in self._left(p)}
-        if len(places) > MAX_FIELDS:
+        if len(places) > MAX_FIELDS or len(self._wait.prospects) * self._flyable.size > MAX_CELLS:
             return None
         return np.stack([self._of(prospect) for prospect in self._wait.prospects])
 
@@ -208,9 +219,7 @@ class _Costs:
         best: Floats = np.full(self._flyable.shape, np.inf)
         for order in _orders(left, prospect.plan):
             rest_s = sum(leg.stop.dwell_s for leg, _ in order)
-            rest_s += sum(
-                float(self._field(b, prospect.free)[a]) for (_, a), (_, b) in itertools.pairwise(order)
-            )
+            rest_s += sum(float(self._field(b, prospect.free)[a]) for (_, a), (_, b) in itertools.pairwise(order))
             best = np.minimum(best, self._field(order[0][1], prospect.free) + rest_s)
         return best
 
@@ -230,7 +239,7 @@ class _Costs:
 
 
 def _orders(left: Sequence[tuple[Leg, Cell3]], plan: Plan) -> Iterator[Sequence[tuple[Leg, Cell3]]]:
-    """Orders in which the stops may be done: the plan's own; of few ones, all in which those that have an order keep it.
+    """Orders in which the stops may be done: the plan's own; of few, all in which those with an order keep it.
 
     Where the way home counts, the plan's own only: it was reckoned from its last stop.
     """
@@ -257,12 +266,6 @@ def _stop_here(wait: Wait, vehicle: VehicleState) -> Stop | None:
             return None
         found = fixed[0].stop
     return found
-
-
-def _done_s(prospect: Prospect, wait: Wait) -> float:
-    """Nothing: what was done is no part of what is left to fly, and its time has passed."""
-    del prospect, wait
-    return 0.0
 
 
 def _cell(map: SemanticMap, leg: Leg) -> Cell3:
