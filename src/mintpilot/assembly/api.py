@@ -16,6 +16,7 @@ from mintpilot.assembly.worlds import World, build_world
 from mintpilot.core.errors import UnknownNameError
 from mintpilot.core.events import Event
 from mintpilot.core.ports import Ask, LanguageModel, Operator, Recorder
+from mintpilot.core.think_time import think_time
 from mintpilot.mission.explanations import explanations
 from mintpilot.mission.preview import preview
 from mintpilot.mission_file.reader import read_mission
@@ -97,6 +98,7 @@ def run_mission(
     vehicle: str = "mujoco",
     strategy: str = "mint",
     strategy_arguments: Mapping[str, Argument] | None = None,
+    think: str | float | None = None,
     seed: int | None = None,
     out: Path | None = None,
     progress: Progress | None = None,
@@ -117,6 +119,8 @@ def run_mission(
             ``"mavlink://udpin:127.0.0.1:14540"``.
         strategy: name of the method of asking.
         strategy_arguments: its own, e.g. ``{"quantile": 0.8}``; they override those of the file.
+        think: how long the scripted operator takes for an answer, seconds: ``5``, or drawn evenly: ``"2..8"``; default:
+            as the file says.
         seed: overrides the seed in the file.
         out: the run folder; None keeps nothing on disk but returns the record.
         progress: told about every event.
@@ -139,6 +143,9 @@ def run_mission(
         DeviceError: a real vehicle cannot be reached, or is not ready to fly.
     """
     file, folder = _opened(mission, base)
+    if think is not None:
+        think_time(think)  # what cannot be read is told before anything is worked out
+        file = file.model_copy(update={"operator": file.operator.model_copy(update={"latency_s": str(think)})})
     choices = Choices(
         strategy=strategy,
         strategy_arguments=_arguments(file, strategy, strategy_arguments),

@@ -37,6 +37,8 @@ class FlightOptions:
     out: Path | None
     """The run folder; None: a new one under ``runs``."""
     as_json: bool
+    think: str | None = None
+    """How long the scripted operator thinks, seconds; None: as the mission file says."""
     strategy_args: tuple[str, ...] = ()
     """Each ``NAME=VALUE``."""
     llm: str | None = None
@@ -93,6 +95,7 @@ def fly(path: Path, options: FlightOptions) -> ExitCode:
                 vehicle=options.vehicle,
                 strategy=options.strategy,
                 strategy_arguments=arguments,
+                think=options.think,
                 seed=options.seed,
                 out=out,
                 progress=tell,

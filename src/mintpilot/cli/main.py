@@ -59,6 +59,7 @@ def demo(
     *,
     headless: Flag = False,
     vehicle: VehicleName = "mujoco",
+    think: str | None = None,
     seed: Seed = None,
     llm: Llm = None,
     lang: Lang = None,
@@ -74,6 +75,7 @@ def demo(
         mission: The warehouse on fire, or the boxes of which one holds the medicine.
         headless: Ask nobody: a scripted operator that knows the truth answers.
         vehicle: Physics and camera, or a fast point mass.
+        think: Seconds that the scripted operator takes for an answer, or two bounds: 2..8. Default: 0.
         seed: Draws another world; the same seed gives the same mission. Default: 0.
         llm: Language model for words: template (none), endpoint, embedded, or a plug-in's. Default: as the file says.
         lang: Language of the questions: en, de, fr or es. Default: as the file says.
@@ -91,6 +93,7 @@ def demo(
         page=PageOptions(opens=True, patience_s=20.0) if not headless and not json and browser_can_open() else None,
         vehicle=vehicle,
         strategy="mint",
+        think=think,
         seed=seed,
         out=out,
         as_json=json,
@@ -115,6 +118,7 @@ def run(
     vehicle: str = "mujoco",
     strategy: str = "mint",
     strategy_arg: StrategyArgs = None,
+    think: str | None = None,
     seed: Seed = None,
     llm: Llm = None,
     lang: Lang = None,
@@ -138,6 +142,7 @@ def run(
             mavlink://udpin:127.0.0.1:14540.
         strategy: How it decides what to ask.
         strategy_arg: NAME=VALUE, an argument of the strategy; may be given several times. Overrides that of the file.
+        think: Seconds that the scripted operator takes for an answer, or two bounds: 2..8. Default: as the file says.
         seed: Of everything that is drawn at random; overrides the one in the file.
         llm: Language model for words: template (none), endpoint, embedded, or a plug-in's. Default: as the file says.
         lang: Language of the questions: en, de, fr or es. Default: as the file says.
@@ -166,6 +171,7 @@ def run(
         vehicle=vehicle,
         strategy=strategy,
         strategy_args=tuple(strategy_arg or ()),
+        think=think,
         seed=seed,
         out=out,
         as_json=json,

@@ -169,8 +169,8 @@ class OperatorSpec(Spec):
     """Probability of answering that it does not know."""
     silence: Probability = 0.0
     """Probability of not answering."""
-    latency_s: NotNegative = 0.0
-    """Time taken for an answer, seconds, on the mission's clock."""
+    latency_s: NotNegative | Seconds = 0.0
+    """Time taken for an answer, seconds, on the mission's clock; `2..8`: drawn evenly between the two."""
 
 
 class MissionFile(Spec):
