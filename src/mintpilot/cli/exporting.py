@@ -9,7 +9,7 @@ from cyclopts import Parameter
 
 from mintpilot.cli.bench_flags import Flag
 from mintpilot.cli.exits import ExitCode, guarded
-from mintpilot.core.errors import RecordError
+from mintpilot.cli.output import put
 
 
 def export(
@@ -59,14 +59,7 @@ def export(
                 text = waypoints_text(plan)
             case _:
                 text = geojson_text(plan)
-        if out is None:
-            print(text, end="")
-            return ExitCode.SUCCESS
-        try:
-            out.write_text(text, encoding="utf-8")
-        except OSError as error:
-            raise RecordError(f"cannot write {out}: {error.strerror}; choose another file with --out") from error
-        print(out)
+        put(text, out)
         return ExitCode.SUCCESS
 
     return guarded(world if to == "usd" else work, as_json=False, debug=debug)
