@@ -38,6 +38,7 @@ from mintpilot.recording.mcap_log import MCAP_FILE
 
 SECONDS = 20.0
 VIEWERS, VIEWED_S = 10, 60.0
+MOTIONS, MOTION_MS = 3, 300.0
 LATE_MS = 500.0
 """A question that a viewer gets later than this is late."""
 FLAGS = ["--headless", "--no-sandbox", "--disable-gpu", "--disable-background-networking", "--no-first-run"]
@@ -213,7 +214,7 @@ def main() -> None:
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path="/usr/bin/chromium", args=FLAGS)
         poses, share = latency(browser)
-        motions = [to_motion(browser, name) for name in DEMOS]
+        motions = {name: [to_motion(browser, name) for _ in range(MOTIONS)] for name in DEMOS}
         browser.close()
     rows = [
         ("page, all files", "under 100 kB", f"{page_kb:.1f} kB", "1"),
@@ -223,8 +224,8 @@ def main() -> None:
         (f"question to each of {VIEWERS} viewers, {VIEWED_S:.0f} s", "none late",
          f"{(late > LATE_MS).sum()} late; p50 {np.percentile(late, 50):.0f}, largest {late.max():.0f} ms",
          f"{len(late)}"),
-        *((f"key to next motion, {name}", "under 300 ms", f"{ms:.0f} ms", "1")
-          for name, ms in zip(DEMOS, motions, strict=True)),
+        *((f"key to next motion, {name}", f"under {MOTION_MS:.0f} ms",
+           f"median {np.median(ms):.0f}, largest {max(ms):.0f} ms", f"{len(ms)}") for name, ms in motions.items()),
         ("both logs, per 60 s of mission, without pictures", "under 2 MB", f"{60e-6 * size / seconds:.2f} MB",
          f"1 ({seconds:.0f} s)"),
     ]  # fmt: skip
@@ -239,6 +240,12 @@ def main() -> None:
             f"viewers are WebSocket clients, a question comes every 2 s and is late after {LATE_MS:.0f} ms. Key to "
             "motion: the demo missions, kinematic.",
             tables=[Table(caption="", header=("what", "must", "measured", "n"), rows=rows)],
+            notes=[
+                f"Key to next motion, {name}: {sum(one > MOTION_MS for one in ms)} of {len(ms)} miss "
+                f"{MOTION_MS:.0f} ms."
+                for name, ms in motions.items()
+                if max(ms) > MOTION_MS
+            ],
         )
     )
 
