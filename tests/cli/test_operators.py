@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 from contextlib import ExitStack
+from pathlib import Path
 from typing import cast
 
 import pytest
@@ -14,6 +15,7 @@ from mintpilot.cli.main import main
 from mintpilot.cli.progress import Narrator
 from mintpilot.cli.web_page import PageOptions, ServedPage
 from mintpilot.core.errors import InputError
+from mintpilot.recording.question_notes import QuestionNotes
 
 
 @pytest.mark.parametrize(
@@ -50,7 +52,10 @@ def chosen(choice: tuple[str, ...], *, page: bool) -> tuple[object, ...]:
     console = Console(file=io.StringIO(), force_terminal=False)
     with ExitStack() as stack, Narrator(console) as narrator:
         served = ServedPage(PageOptions(), console, stack) if page else None
-        return cast("tuple[object, ...]", _operators(choice, console, narrator, served, stack, real=False))
+        return cast(
+            "tuple[object, ...]",
+            _operators(choice, console, narrator, served, stack, notes=QuestionNotes(Path("nowhere")), real=False),
+        )
 
 
 def test_page_and_terminal_stand_side_by_side() -> None:
@@ -64,4 +69,4 @@ def test_page_and_terminal_stand_side_by_side() -> None:
 def test_a_real_vehicle_is_not_left_to_the_script() -> None:
     console = Console(file=io.StringIO(), force_terminal=False)
     with ExitStack() as stack, Narrator(console) as narrator, pytest.raises(InputError, match="real vehicle"):
-        _operators((), console, narrator, None, stack, real=True)
+        _operators((), console, narrator, None, stack, notes=QuestionNotes(Path("nowhere")), real=True)

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from mintpilot.cli.progress import Narrator
     from mintpilot.core.events import Event
     from mintpilot.core.ports import Operator
+    from mintpilot.recording.question_notes import QuestionNotes
 
 
 OPERATORS = ("terminal", "console", "voice", "scripted")
@@ -56,6 +57,8 @@ class FlightOptions:
     out: Path | None
     """The run folder; None: a new one under ``runs``."""
     as_json: bool
+    think: str | None = None
+    """How long the scripted operator thinks, seconds; None: as the mission file says."""
     strategy_args: tuple[str, ...] = ()
     """Each ``NAME=VALUE``."""
     llm: str | None = None
@@ -76,6 +79,7 @@ def fly(path: Path, options: FlightOptions) -> ExitCode:
     from mintpilot.assembly.strategies import parse_arguments
     from mintpilot.cli.progress import LenientConsole, Narrator
     from mintpilot.mission_file.reader import read_mission
+    from mintpilot.recording.question_notes import QuestionNotes
     from mintpilot.recording.run_folder import new_run_path
     from mintpilot.recording.run_summary import summary
     from mintpilot.recording.terminal_report import print_report
@@ -85,11 +89,13 @@ def fly(path: Path, options: FlightOptions) -> ExitCode:
     mission = read_mission(path)
     errors = LenientConsole(stderr=True)
     out = options.out or new_run_path(Path("runs"), mission.name, datetime.now(UTC))
+    notes = QuestionNotes(out)
     with ExitStack() as stack, Narrator(errors) as narrator:
         served = ServedPage(options.page, errors, stack) if options.page is not None else None
 
         def tell(event: Event) -> None:
             narrator(event)
+            notes(event)
             if served is not None:
                 served.record(event)
             stop_if_wanted(event)
@@ -98,11 +104,18 @@ def fly(path: Path, options: FlightOptions) -> ExitCode:
             record = run_mission(
                 path,
                 operator=_operators(
-                    options.operators, errors, narrator, served, stack, real=options.vehicle.startswith("mavlink:")
+                    options.operators,
+                    errors,
+                    narrator,
+                    served,
+                    stack,
+                    notes=notes,
+                    real="://" in options.vehicle,
                 ),
                 vehicle=options.vehicle,
                 strategy=options.strategy,
                 strategy_arguments=arguments,
+                think=options.think,
                 seed=options.seed,
                 out=out,
                 progress=tell,
@@ -139,6 +152,7 @@ def _operators(
     served: ServedPage | None,
     closing: ExitStack,
     *,
+    notes: QuestionNotes,
     real: bool,
 ) -> tuple[AnyOperator, ...]:
     """Whoever answers. Where nobody is named: the page if there is one, and the terminal where somebody is there."""
@@ -157,11 +171,11 @@ def _operators(
         made.append(_voice(console, closing))
     # by voice, keys answer as well
     if "terminal" in choice or (somebody and choice in ((), ("voice",))):
-        made.append(_terminal(console, narrator))
+        made.append(_terminal(console, narrator, notes))
     return tuple(made)
 
 
-def _terminal(console: Console, narrator: Narrator) -> AnyOperator:
+def _terminal(console: Console, narrator: Narrator, notes: QuestionNotes) -> AnyOperator:
     """The person at this terminal."""
     if sys.stdin is None:
         raise InputError("--operator terminal needs a standard input; use --operator scripted where nobody is there")
@@ -171,7 +185,9 @@ def _terminal(console: Console, narrator: Narrator) -> AnyOperator:
     answers = sys.stdin
 
     def made(talk: Talk) -> Operator:
-        person = TerminalOperator(console, answers, understand=talk.understand, order_of=talk.order_of, lang=talk.lang)
+        person = TerminalOperator(
+            console, answers, understand=talk.understand, order_of=talk.order_of, lang=talk.lang, notes=notes
+        )
         return Attended(person, narrator)
 
     return made

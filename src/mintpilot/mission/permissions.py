@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from mintpilot.core.gap import ABSENT, BLOCKED, PASSABLE, PRESENT, Belief, GapKind, obstacle_id, presence_id
+from mintpilot.core.gap import ABSENT, BLOCKED, NOWHERE, PASSABLE, PRESENT, Belief, GapKind, obstacle_id, presence_id
 from mintpilot.core.mission import AskingSettings
 from mintpilot.core.query import YES_PART, Query
 from mintpilot.core.semantic_map import Knowledge, SemanticMap
@@ -37,7 +37,7 @@ def permissions(state: BeliefState, settings: AskingSettings) -> Permissions:
             leave_out.add(gap.id)
         if gap.kind is GapKind.TARGET and len(gap.values) > 1:
             p = belief.marginal(gap.id)
-            if float(p.max()) >= 1 - settings.alpha:
+            if float(p.max()) >= 1 - settings.alpha and gap.values[int(np.argmax(p))] not in NOWHERE:
                 pick.add((gap.id, gap.values[int(np.argmax(p))]))
     return Permissions(enter=frozenset(enter), leave_out=frozenset(leave_out), pick=frozenset(pick))
 
@@ -48,7 +48,7 @@ def enlarges(before: BeliefState, after: BeliefState, settings: AskingSettings) 
     return not (new.enter <= old.enter and new.leave_out <= old.leave_out and new.pick <= old.pick)
 
 
-def revoke(state: BeliefState, query: Query, part: int | None) -> BeliefState:
+def revoke(state: BeliefState, query: Query, part: int) -> BeliefState:
     """The state after an answer to an earlier question was taken back.
 
     A single region or room gets the opposite value at once; where the query spoke of more, everything that it spoke of
@@ -73,7 +73,7 @@ def revoke(state: BeliefState, query: Query, part: int | None) -> BeliefState:
     )
 
 
-def _reopen_rooms(map: SemanticMap, query: Query, part: int | None, single: bool) -> SemanticMap:
+def _reopen_rooms(map: SemanticMap, query: Query, part: int, single: bool) -> SemanticMap:
     for room in map.rooms:
         if presence_id(room.id) in query.gap_ids and room.occupied is Knowledge.NO:
             present = single and _value(query, part, PRESENT, ABSENT) == PRESENT
@@ -81,7 +81,7 @@ def _reopen_rooms(map: SemanticMap, query: Query, part: int | None, single: bool
     return map
 
 
-def _value(query: Query, part: int | None, first: str, second: str) -> str:
+def _value(query: Query, part: int, first: str, second: str) -> str:
     """Which of two values an answer to a yes/no query about one gap says."""
     named = first if first in query.literals[0].values else second
     other = second if named == first else first
