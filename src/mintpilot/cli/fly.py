@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
 from datetime import UTC, datetime
@@ -25,12 +26,31 @@ if TYPE_CHECKING:
     from mintpilot.recording.question_notes import QuestionNotes
 
 
+OPERATORS = ("terminal", "console", "voice", "scripted")
+"""Who may answer. Several may at once, but for the script, which would always be first."""
+
+
+def operator_names(given: Sequence[str]) -> tuple[str, ...]:
+    """The operators that are named, each once: ``console,terminal``, or each given for itself.
+
+    Raises:
+        InputError: there is none of that name, or the script is to answer beside somebody.
+    """
+    names = tuple(dict.fromkeys(name.strip() for one in given for name in one.split(",")))
+    for name in names:
+        if name not in OPERATORS:
+            raise InputError(f"--operator {name}: there is none of that name; choose among {', '.join(OPERATORS)}")
+    if "scripted" in names and len(names) > 1:
+        raise InputError("--operator scripted answers at once, before any person: give it alone")
+    return names
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FlightOptions:
     """How a mission is flown, as the command line says it."""
 
-    operator: str | None
-    """``terminal``, ``console``, ``voice`` or ``scripted``; None: the terminal's where somebody is there."""
+    operators: tuple[str, ...]
+    """Some of `OPERATORS`; none: the terminal's where somebody is there, else the script."""
     vehicle: str
     strategy: str
     seed: int | None
@@ -84,7 +104,7 @@ def fly(path: Path, options: FlightOptions) -> ExitCode:
             record = run_mission(
                 path,
                 operator=_operators(
-                    options.operator,
+                    options.operators,
                     errors,
                     narrator,
                     served,
@@ -103,7 +123,7 @@ def fly(path: Path, options: FlightOptions) -> ExitCode:
                 lang=options.lang,
                 perception=options.perception,
                 accept_failsafes=options.accept_failsafes,
-                briefs=served is not None or (_somebody(errors) and options.operator != "scripted"),
+                briefs=served is not None or (_somebody(errors) and options.operators != ("scripted",)),
             )
         except KeyboardInterrupt:
             narrator.rest()
@@ -126,7 +146,7 @@ def _somebody(console: Console) -> bool:
 
 
 def _operators(
-    choice: str | None,
+    choice: tuple[str, ...],
     console: Console,
     narrator: Narrator,
     served: ServedPage | None,
@@ -135,52 +155,55 @@ def _operators(
     notes: QuestionNotes,
     real: bool,
 ) -> tuple[AnyOperator, ...]:
-    """Whoever answers: the page first, and the terminal beside it where somebody is there."""
-    pages = () if served is None else (served.operator,)
-    if pages and (choice == "console" or not _somebody(console)):
-        return pages
-    return (*pages, *_present(choice, console, narrator, closing, notes=notes, real=real))
-
-
-def _present(
-    choice: str | None,
-    console: Console,
-    narrator: Narrator,
-    closing: ExitStack,
-    *,
-    notes: QuestionNotes,
-    real: bool,
-) -> tuple[AnyOperator, ...]:
-    """The person here, or the scripted operator. By voice, keys answer as well."""
-    if choice is None and not _somebody(console) and real:
-        raise InputError(
-            "a real vehicle needs somebody who answers and can call it back: use --operator terminal or console "
-            "(--operator scripted is for the vehicle double)"
-        )
-    if choice == "scripted" or (choice is None and not _somebody(console)):
+    """Whoever answers. Where nobody is named: the page if there is one, and the terminal where somebody is there."""
+    somebody = _somebody(console)
+    if not choice and not somebody and served is None:
+        if real:
+            raise InputError(
+                "a real vehicle needs somebody who answers and can call it back: use --operator terminal or console "
+                "(--operator scripted is for the vehicle double)"
+            )
         return ("scripted",)
+    if choice == ("scripted",):
+        return ("scripted",)
+    made: list[AnyOperator] = [] if served is None else [served.operator]
+    if "voice" in choice:
+        made.append(_voice(console, closing))
+    # by voice, keys answer as well
+    if "terminal" in choice or (somebody and choice in ((), ("voice",))):
+        made.append(_terminal(console, narrator, notes))
+    return tuple(made)
+
+
+def _terminal(console: Console, narrator: Narrator, notes: QuestionNotes) -> AnyOperator:
+    """The person at this terminal."""
     if sys.stdin is None:
         raise InputError("--operator terminal needs a standard input; use --operator scripted where nobody is there")
     from mintpilot.cli.progress import Attended
     from mintpilot.interaction.terminal import TerminalOperator
 
+    answers = sys.stdin
+
     def made(talk: Talk) -> Operator:
         person = TerminalOperator(
-            console, sys.stdin, understand=talk.understand, order_of=talk.order_of, lang=talk.lang, notes=notes
+            console, answers, understand=talk.understand, order_of=talk.order_of, lang=talk.lang, notes=notes
         )
         return Attended(person, narrator)
 
-    if choice != "voice":
-        return (made,)
+    return made
+
+
+def _voice(console: Console, closing: ExitStack) -> AnyOperator:
+    """The person who speaks here."""
     from mintpilot.assembly.voiced import voice_operator
     from mintpilot.voice.devices import PortAudioLink
 
     link = PortAudioLink()
     closing.callback(link.close)
 
-    def spoken(talk: Talk) -> Operator:
+    def made(talk: Talk) -> Operator:
         person = voice_operator(link, talk, lambda text: console.print(f"[spoken] {text}", markup=False))
         closing.callback(person.close)
         return person
 
-    return (spoken, made) if _somebody(console) else (spoken,)
+    return made

@@ -19,6 +19,7 @@ from mintpilot.cli.logs import log, runs
 from mintpilot.cli.simulating import sim
 from mintpilot.cli.understand_answer import answer
 from mintpilot.cli.understand_instruction import instruction
+from mintpilot.core.errors import InputError
 
 app = App(
     name="mintpilot",
@@ -36,7 +37,7 @@ Seed: TypeAlias = Annotated[int | None, Parameter(name="--seed")]
 StrategyArgs: TypeAlias = Annotated[list[str] | None, Parameter(name="--strategy-arg", negative="")]
 Llm: TypeAlias = Annotated[str | None, Parameter(name="--llm")]
 Lang: TypeAlias = Annotated[str | None, Parameter(name="--lang")]
-OperatorName: TypeAlias = Literal["terminal", "console", "voice", "scripted"]
+Operators: TypeAlias = Annotated[list[str] | None, Parameter(name="--operator", negative="")]
 Port: TypeAlias = Annotated[int | None, Parameter(validator=validators.Number(gte=0, lte=65535))]
 VehicleName: TypeAlias = Literal["mujoco", "kinematic"]
 
@@ -86,11 +87,11 @@ def demo(
     """
     from mintpilot.cli.demos import demo_path
     from mintpilot.cli.fly import FlightOptions, fly
-    from mintpilot.cli.web_page import PageOptions, browser_can_open
+    from mintpilot.cli.web_page import BESIDE_S, PageOptions, browser_can_open
 
     options = FlightOptions(
-        operator="scripted" if headless else None,
-        page=PageOptions(opens=True, patience_s=20.0) if not headless and not json and browser_can_open() else None,
+        operators=("scripted",) if headless else (),
+        page=PageOptions(opens=True, patience_s=BESIDE_S) if not headless and not json and browser_can_open() else None,
         vehicle=vehicle,
         strategy="mint",
         think=think,
@@ -114,7 +115,7 @@ def run(
     mission: Path,
     /,
     *,
-    operator: OperatorName | None = None,
+    operator: Operators = None,
     vehicle: str = "mujoco",
     strategy: str = "mint",
     strategy_arg: StrategyArgs = None,
@@ -136,8 +137,9 @@ def run(
 
     Args:
         mission: The mission file (YAML).
-        operator: Who answers: you at this terminal, you on a web page (console), you by voice and keys, or a script
-            that knows the truth. Default: you at this terminal, where there is one.
+        operator: Who answers: terminal (you here), console (you on a web page), voice, or scripted (a script that
+            knows the truth). Several at once, joined by commas or given several times: the first answer counts.
+            Default: terminal, where there is one.
         vehicle: mujoco: physics and camera; kinematic: a fast point mass; or a real one by its address, e.g.
             mavlink://udpin:127.0.0.1:14540.
         strategy: How it decides what to ask.
@@ -157,16 +159,23 @@ def run(
             The whole record is in the run folder.
         debug: Show the traceback of an error.
     """
-    from mintpilot.cli.fly import FlightOptions, fly
-    from mintpilot.cli.web_page import PageOptions
+    from mintpilot.cli.fly import FlightOptions, fly, operator_names
+    from mintpilot.cli.web_page import BESIDE_S, PageOptions
 
+    try:
+        people = operator_names(operator or ())
+    except InputError as error:
+        return fail(str(error), as_json=json)
     page = None
-    if operator == "console":
-        page = PageOptions(host=host or "127.0.0.1", port=port or 0, tls_cert=tls_cert, tls_key=tls_key)
+    if "console" in people:
+        patience_s = BESIDE_S if len(people) > 1 else None
+        page = PageOptions(
+            host=host or "127.0.0.1", port=port or 0, tls_cert=tls_cert, tls_key=tls_key, patience_s=patience_s
+        )
     elif (host, port, tls_cert, tls_key) != (None, None, None, None):
         return fail("--host, --port, --tls-cert and --tls-key go with --operator console only", as_json=json)
     options = FlightOptions(
-        operator=operator,
+        operators=people,
         page=page,
         vehicle=vehicle,
         strategy=strategy,

@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     from mintpilot.core.events import Event
     from mintpilot.core.ports import Operator
 
+BESIDE_S = 20.0
+"""Where others answer too, somebody at the page is waited for so long, seconds."""
 _WAIT_S = 0.2
 """How often it is looked whether somebody has come, seconds: Ctrl-C is heard in between."""
 
@@ -80,7 +82,7 @@ class ServedPage:
         while not page.wait_for_somebody(_WAIT_S):
             waited_s += _WAIT_S
             if options.patience_s is not None and waited_s >= options.patience_s:
-                self._console.print("Nobody has yet: the mission begins, and the terminal answers.", highlight=False)
+                self._console.print("Nobody has yet: the mission begins, and whoever is here answers.", highlight=False)
                 break
         return page
 
