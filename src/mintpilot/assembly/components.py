@@ -21,6 +21,7 @@ from mintpilot.core.geometry import Floats, GridFrame
 from mintpilot.core.ports import Operator, Perception, Recorder, Vehicle
 from mintpilot.core.semantic_map import SemanticMap
 from mintpilot.core.task import Action
+from mintpilot.core.think_time import think_time
 from mintpilot.elicitation.wording import word_question
 from mintpilot.mission.components import MissionComponents
 from mintpilot.mission.deliberation import DeliberationParts
@@ -46,7 +47,7 @@ class VehicleChoice(StrEnum):
     KINEMATIC = "kinematic"
     """Follows trajectories exactly; the map is what a perfect survey would show."""
     MAVLINK = "mavlink"
-    """A real vehicle; the map is given, and there is no camera."""
+    """A real vehicle, over MAVLink or by a plug-in; the map is given, and there is no camera."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -116,7 +117,7 @@ def scripted_operator(world: World, spec: OperatorSpec) -> ScriptedOperator:
         answer_error=spec.answer_error,
         unsure_rate=spec.unsure,
         silence_rate=spec.silence,
-        latency_s=spec.latency_s,
+        think=think_time(spec.latency_s),
     )
 
 
