@@ -20,7 +20,6 @@ from mintpilot.perception.calibration import (
     LabelScale,
     fit,
     read_calibration,
-    shipped_calibration,
 )
 
 
@@ -66,7 +65,6 @@ def test_what_was_found_in_drawn_rooms_takes_certainty_away_and_never_gives_any(
     said = said_by(CalibratedNamer(Says(person=0.17, bowl=0.35), scales, only_lowers=True))
     assert said["person"] == pytest.approx(0.17)
     assert said["bowl"] < 0.1
-    assert shipped_calibration().only_lowers
 
 
 def test_what_was_never_wrong_is_not_certain() -> None:
@@ -98,12 +96,3 @@ def test_a_file_is_read_back_and_a_broken_one_is_named(tmp_path: Path) -> None:
         path.write_text(broken)
         with pytest.raises(InputError, match="bench perception --calibrate"):
             read_calibration(path)
-
-
-def test_ours_says_by_which_command_and_on_which_style_it_was_found() -> None:
-    from mintpilot.simulation.furnished.style import HELD_BACK
-
-    made = shipped_calibration()
-    assert "bench perception --calibrate" in made.made_by
-    assert not any(name in made.made_by for name in HELD_BACK)
-    assert "person" in made.namers["geometry"]

@@ -67,7 +67,7 @@ class Choices:
     namers: tuple[str, ...] = ()
     """Who names what perception finds; empty: its own way."""
     calibration: Path | None = None
-    """File of measured confidences of the namers; None: ours."""
+    """File of measured confidences of the namers; None: as they say them."""
     camera_size: tuple[int, int] = (320, 240)
     briefs: bool = False
     """Whether go or no-go is asked before take-off. It always is where a language model read the instruction."""

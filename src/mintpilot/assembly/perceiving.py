@@ -11,7 +11,7 @@ from typing import Final
 from mintpilot.assembly.registry import load
 from mintpilot.core.errors import InputError
 from mintpilot.core.ports import Namer, Perception
-from mintpilot.perception.calibration import CalibratedNamer, read_calibration, shipped_calibration
+from mintpilot.perception.calibration import CalibratedNamer, read_calibration
 from mintpilot.perception.recorded_vision import RecordedVision
 from mintpilot.perception.segments import SegmentPerception
 from mintpilot.perception.settings import PerceptionSettings
@@ -37,7 +37,7 @@ class Seeing:
     floor_m: float = 0.0
     """Height of the floor in the world frame, metres."""
     calibration: Path | None = None
-    """File of confidences measured on somebody's own pictures; what it does not tell of is as we measured it."""
+    """File of confidences measured on somebody's own pictures; what it does not tell of stays as it is said."""
 
 
 def make_perception(seeing: Seeing, environment: Mapping[str, str] = os.environ) -> Perception:
@@ -77,14 +77,13 @@ def remarks_of(perception: Perception) -> Sequence[str]:
 
 
 def calibrated_namer(name: str, seeing: Seeing, environment: Mapping[str, str] = os.environ) -> Namer:
-    """A namer with confidences as they were measured: by who flies, else by us."""
+    """A namer with confidences as whoever flies measured them; without a measurement as it says them."""
     namer = plain_namer(name, seeing.wanted, environment)
     if seeing.calibration is not None:
         given = read_calibration(seeing.calibration)
         if name in given.namers:
             return CalibratedNamer(namer, given.namers[name], only_lowers=given.only_lowers)
-    ours = shipped_calibration()
-    return CalibratedNamer(namer, ours.namers.get(name, {}), only_lowers=ours.only_lowers)
+    return namer
 
 
 def plain_namer(name: str, wanted: Sequence[str] = (), environment: Mapping[str, str] = os.environ) -> Namer:

@@ -42,7 +42,7 @@ def see(
         name: what the report calls it.
         perception: registered name of what makes objects of pictures.
         namers: registered names of who names what is found; empty: the perception's own way.
-        calibration: file of measured confidences of the namers; None: ours.
+        calibration: file of measured confidences of the namers; None: as they say them.
         instruction: gaps are then those that bear on it, too.
         out: folder that becomes a world for missions (``world: {seen: DIR}``); None: nothing is written.
 

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from functools import cache
-from importlib.resources import files
 from pathlib import Path
 
 import numpy as np
@@ -119,12 +117,6 @@ def read_calibration(path: Path) -> Calibration:
         raise InputError(
             f"'{path}' is no calibration ({what}); make one: mintpilot bench perception --calibrate FILE"
         ) from None
-
-
-@cache
-def shipped_calibration() -> Calibration:
-    """That of our own namers, found in furnished rooms of the styles that rules were chosen on; it only lowers."""
-    return Calibration.model_validate_json((files(__package__) / "calibration.json").read_text("utf-8"))
 
 
 def _odds(p: float) -> float:

@@ -42,7 +42,9 @@ SURE, LIKELY = 0.92, 0.75
 def find_leaves(view: View, scene: Scene, index: int, settings: PerceptionSettings) -> list[Detection]:
     """Shut doors in the walls of a view. Each wall's outliers in colour, and in relief, are held against a door."""
     found: list[Detection] = []
+    least = LEAST_SHARE * view.valid.size
     walls = [b for b in scene.bodies if b.kind is BodyKind.WALL and abs(float(b.patch.normal[2])) <= 0.2]
+    walls = [b for b in walls if b.patch.pixels >= least and b.patch.hi_m[2] - settings.floor_m > HEIGHT_M[0] / 2]
     lines = _lines(view) if walls else None
     for wall in walls:
         assert lines is not None

@@ -65,13 +65,14 @@ def measured(view: View, surfaces: Surfaces, marks: Ints, count: int) -> list[Pa
     focal2 = view.frame.camera.fx * view.frame.camera.fy
     found = []
     for number in range(1, count + 1):
-        pixels = order[ends[number - 1] : ends[number]]
+        whole = order[ends[number - 1] : ends[number]]
+        pixels = whole[:: max(1, len(whole) // (2 * SAMPLE))]
         own, facing = as_floats(points[pixels]), as_floats(normals[pixels])
-        found.append(_measured(number, own, facing, depth[pixels].astype(float), eye, focal2))
+        found.append(_measured(number, len(whole), own, facing, depth[pixels].astype(float), eye, focal2))
     return found
 
 
-def _measured(number: int, own: Floats, facing: Floats, depth: Floats, eye: Floats, focal2: float) -> Patch:
+def _measured(number: int, size: int, own: Floats, facing: Floats, depth: Floats, eye: Floats, focal2: float) -> Patch:
     towards = eye - own
     slant = np.abs(np.einsum("ij,ij->i", towards, facing)) / np.maximum(np.linalg.norm(towards, axis=1), 1e-6)
     known = np.linalg.norm(facing, axis=1) > 0.5
@@ -83,8 +84,8 @@ def _measured(number: int, own: Floats, facing: Floats, depth: Floats, eye: Floa
     side, side_m = _side(own[upright], facing[upright], len(own))
     return Patch(
         number=number,
-        pixels=len(own),
-        area_m2=float((depth**2 / focal2 / np.maximum(slant, 0.15)).sum()),
+        pixels=size,
+        area_m2=float((depth**2 / focal2 / np.maximum(slant, 0.15)).mean()) * size,
         level=float(level.mean()),
         upright=float(upright.mean()),
         normal=sign * normal,
