@@ -29,9 +29,10 @@ def main() -> None:
             command="python -m bench.voice --clips FOLDER "
             f"--most {options.most} --voices {options.voices} --snr {' '.join(f'{s:g}' for s in options.snr)}",
             how="One-second recordings of yes, no and other words, and phrases synthesised in several voices; rotor "
-            f"noise is made. The least probability, {result.confidence:g}, was chosen on every other clip; all figures "
-            "are of the rest. Yes and no are taken as answers to a question about smoke; yes counts as heard although "
-            "it still has to be read back and confirmed.",
+            "noise is made. The thresholds were chosen on other clips, other phrases and, but for the one American "
+            "speaker, other voices. Yes and no are taken as answers to a question about smoke. A guarded update takes "
+            "effect only by 'confirm' after a read-back, so what is falsely taken for 'confirm' is false guarded "
+            "acceptance; what is falsely taken for yes is read back only.",
             tables=[PageTable(caption=c, header=h, rows=r) for c, h, r in voice_tables(result)],
             notes=result.notes,
         )

@@ -13,9 +13,9 @@ from mintpilot.core.geometry import Floats
 from mintpilot.voice.audio import clean, from_pcm, read_wav, write_wav
 from mintpilot.voice.doubles import ActivityDouble, RecogniserDouble, SpeechDouble
 from mintpilot.voice.echo import FRAME, EchoCanceller
-from mintpilot.voice.hearing import FLOOD_S, Ear, Listener, Segmenter
+from mintpilot.voice.hearing import FLOOD_S, Ear, Listener, Segmenter, Utterance
 from mintpilot.voice.models import check, checked_files
-from mintpilot.voice.ports import RATE_HZ
+from mintpilot.voice.ports import RATE_HZ, Hypothesis, Recogniser
 from mintpilot.voice.rotor import mixed, rotor_noise
 
 TONE_HZ = 440.0
@@ -97,6 +97,41 @@ def test_two_people_at_once_are_not_sure_or_not_read_alike() -> None:
     )  # fmt: skip
     (heard,) = listener.feed(np.concatenate([both, np.zeros(RATE_HZ)]))
     assert (heard.text, heard.second) == ("yes", "no")
+
+
+class _Says(Recogniser):
+    """Gives a free text, and probabilities of short words."""
+
+    def __init__(self, text: str, **words: float) -> None:
+        scored = (Hypothesis(text=word, probability=p) for word, p in words.items())
+        self._found = (Hypothesis(text=text, probability=0.9), *scored)
+
+    def hypotheses(self, samples: Floats) -> tuple[Hypothesis, ...]:
+        return self._found
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "text", "is_sure"),
+    [
+        (_Says("In front.", confirm=0.12), _Says("confirm.", confirm=0.9), "confirm", True),
+        (_Says("Confirm.", confirm=0.9), _Says("Comfort.", confirm=0.001), "Confirm.", False),
+        (_Says("Confirm.", confirm=0.9), _Says("No.", confirm=0.3, no=0.6), "Confirm.", False),
+        (_Says("Can form.", confirm=0.09, no=0.3), _Says("No.", confirm=0.02, no=0.9), "no", True),
+        (_Says("Yes.", yes=0.9), _Says("Yes, but it is hot.", yes=0.0), "Yes.", False),
+        (_Says("the red one", yes=0.0), _Says("The red one.", yes=0.0), "the red one", True),
+    ],
+)
+def test_a_short_word_is_heard_where_both_find_it_likely_and_no_other_more_so(
+    first: _Says, second: _Says, text: str, is_sure: bool
+) -> None:
+    heard = Ear(first=first, second=second).hear(Utterance(samples=np.zeros(RATE_HZ), began=0))
+    assert (heard.text, heard.is_sure) == (text, is_sure)
+
+
+def test_what_was_written_down_is_kept_so_that_stop_is_never_lost() -> None:
+    ear = Ear(first=_Says("Yes.", yes=0.9), second=_Says("Stop.", yes=0.3, stop=0.6))
+    heard = ear.hear(Utterance(samples=np.zeros(RATE_HZ), began=0))
+    assert (heard.text, heard.written) == ("yes", ("Yes.", "Stop."))
 
 
 def test_a_microphone_that_floods_is_bounded_and_counted() -> None:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, TypeAlias, cast
 
 from mintpilot.assembly.components import Choices, VehicleChoice, components_for, deliberation_parts, scripted_operator
 from mintpilot.assembly.deliberation_report import DeliberationReport, deliberation_report
+from mintpilot.assembly.registry import names
 from mintpilot.assembly.strategies import Argument, strategy_label
 from mintpilot.assembly.talk import Talk, talk_for
 from mintpilot.assembly.worlds import World, build_world
@@ -149,11 +150,12 @@ def run_mission(
         strategy=strategy,
         strategy_arguments=_arguments(file, strategy, strategy_arguments),
         vehicle=vehicle_choice(vehicle),
-        address=vehicle if vehicle.startswith(SCHEME) else "",
+        address=vehicle if "://" in vehicle else "",
         accept_failsafes=accept_failsafes,
         perception=perception or file.perception.use,
         briefs=briefs,
         namers=tuple(file.perception.namers) if perception in (None, file.perception.use) else (),
+        calibration=_calibration(file, folder) if perception in (None, file.perception.use) else None,
     )
     with talk_for(file.language, llm=llm, lang=lang) as talk:
         world = build_world(file, base=folder, seed=seed, parse=talk.parse)
@@ -221,8 +223,10 @@ def vehicle_choice(name: str) -> VehicleChoice:
         UnknownNameError: there is none; the known ones are listed.
         InputError: the address of a real vehicle cannot be read.
     """
-    if name.startswith(SCHEME):
-        parse_address(name)  # a wrong one is told before anything is worked out
+    scheme, found, _ = name.partition("://")
+    if found and scheme in names("vehicle"):
+        if name.startswith(SCHEME):
+            parse_address(name)  # a wrong one is told before anything is worked out
         return VehicleChoice.MAVLINK
     simulated = [choice for choice in VehicleChoice if choice is not VehicleChoice.MAVLINK]
     if name not in simulated:
@@ -236,3 +240,7 @@ def _operator(operator: AnyOperator, world: World, file: MissionFile, talk: Talk
     if operator != "scripted":
         raise UnknownNameError("operator", operator, ["scripted"])
     return scripted_operator(world, file.operator)
+
+
+def _calibration(file: MissionFile, folder: Path) -> Path | None:
+    return None if file.perception.calibration is None else folder / file.perception.calibration

@@ -57,7 +57,7 @@ class WorldKnowledge:
     def __call__(self, heard: str) -> str | None:
         """What the person says; None: nothing, since it was no question."""
         read_back = _READ_BACK.search(heard)
-        if read_back is not None and "confirm" in heard.casefold():
+        if read_back is not None:
             return "confirm" if read_back.group(1).casefold() == self._last else "no"
         best = max(self.answers, key=lambda text: alike(heard, text), default="")
         if alike(heard, best) < RECOGNISED:
@@ -115,7 +115,7 @@ def real_parts(link: SoundLink, *, lang: str = "en") -> VoiceParts:
         MissingPartError: one is not; the message says how to get it.
         InputError: a model file is not the pinned one.
     """
-    first, second = (load("recogniser", name)() for name in ("whisper", "moonshine"))
+    first, second = (load("recogniser", name)() for name in ("moonshine", "whisper"))
     activity = load("activity", "silero")()
     return VoiceParts(
         speech=load("speech", "piper" if lang == "en" else "espeak")(),

@@ -24,8 +24,6 @@ from mintpilot.core.errors import MissingPartError
 from mintpilot.voice.hearing import Ear
 from mintpilot.voice.ports import Speech
 
-CONFIDENCES = (0.3, 0.5, 0.7, 0.8, 0.9, 0.95)
-"""Least probabilities that are tried on the first half of the clips."""
 Rows: TypeAlias = tuple[str, Sequence[str], list[Sequence[str]]]
 """Caption, header, rows."""
 
@@ -49,10 +47,7 @@ class VoiceOptions:
 class VoiceResult:
     """One run of the measurement."""
 
-    confidence: float
-    """Least probability of the first recogniser, chosen on the first half."""
     trials: tuple[VoiceTrial, ...]
-    """Of the second half only."""
     notes: tuple[str, ...]
     memory_mb: float
 
@@ -64,7 +59,7 @@ def measure_voice(options: VoiceOptions, progress: Callable[[str], object] = lam
         MissingPartError: a recogniser is not installed.
         InputError: the folder has no recordings.
     """
-    ear = Ear(first=load("recogniser", "whisper")(), second=load("recogniser", "moonshine")())
+    ear = Ear(first=load("recogniser", "moonshine")(), second=load("recogniser", "whisper")())
     clips = recorded_clips(options.clips, options.most) if options.clips is not None else []
     notes = ["Nothing was heard of a person beside real rotors: the noise is made."]
     opened: list[Speech] = []
@@ -78,32 +73,19 @@ def measure_voice(options: VoiceOptions, progress: Callable[[str], object] = lam
     finally:
         for speech in opened:
             getattr(speech, "close", lambda: None)()
-    firsts = {clip.name for clip in clips[::2]}
-    chosen = chosen_confidence([trial for trial in trials if trial.name in firsts])
     return VoiceResult(
-        confidence=chosen,
-        trials=tuple(trial for trial in trials if trial.name not in firsts),
+        trials=tuple(trials),
         notes=tuple(notes),
         memory_mb=resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024,
     )
 
 
-def chosen_confidence(trials: Sequence[VoiceTrial]) -> float:
-    """Of `CONFIDENCES` the one with the fewest false yes and no and, of those, the most right ones."""
-
-    def worth(confidence: float) -> tuple[int, int]:
-        found = [(outcome(trial, confidence), trial.says) for trial in trials]
-        return -sum(got in ("yes", "no") and got != says for got, says in found), sum(g == s for g, s in found)
-
-    return max(CONFIDENCES, key=worth)
-
-
 def voice_tables(result: VoiceResult) -> list[Rows]:
     """What is printed and kept."""
-    trials, confidence = result.trials, result.confidence
+    trials = result.trials
     sources = ("recorded", "synthesised")
-    heard = [row for source in sources for row in _heard(_of(trials, source), source, confidence)]
-    off = [row for source in sources for row in _off_grammar(_of(trials, source), source, confidence)]
+    heard = [row for source in sources for row in _heard(_of(trials, source), source)]
+    off = [row for source in sources for row in _off_grammar(_of(trials, source), source)]
     every = sorted(trial.answer_s for trial in trials)
     cuts = quantiles(every, n=20) if len(every) > 1 else every * 19
     factor = sum(trial.seconds for trial in trials) / max(1e-9, sum(trial.sound_s for trial in trials))
@@ -112,7 +94,7 @@ def voice_tables(result: VoiceResult) -> list[Rows]:
         ("What was said and heard", ("source", "condition", "said", "n", "right", "asked again", "opposite"), heard),
         (
             "Speech that is no answer",
-            ("source", "condition", "n", "taken for yes", "at most, 95 %", "for no", "for an order", "for confirm"),
+            ("source", "condition", "n", "taken for confirm", "at most, 95 %", "for yes", "for no", "for an order"),
             off,
         ),
         ("Time", ("n", "recognition p50", "p95", "work a second of sound", "memory"), [*speed]),
@@ -123,11 +105,11 @@ def _of(trials: Sequence[VoiceTrial], source: str) -> list[VoiceTrial]:
     return [trial for trial in trials if (trial.source == "recorded") is (source == "recorded")]
 
 
-def _heard(trials: Sequence[VoiceTrial], source: str, confidence: float) -> list[Sequence[str]]:
+def _heard(trials: Sequence[VoiceTrial], source: str) -> list[Sequence[str]]:
     rows: list[Sequence[str]] = []
     for snr_db in dict.fromkeys(trial.snr_db for trial in trials):
         for says in ("yes", "no", "confirm", "stop", "come back", "land"):
-            got = [outcome(t, confidence) for t in trials if t.snr_db == snr_db and t.says == says]
+            got = [outcome(t) for t in trials if t.snr_db == snr_db and t.says == says]
             if not got:
                 continue
             opposite = sum(one == {"yes": "no", "no": "yes"}.get(says) for one in got)
@@ -136,7 +118,7 @@ def _heard(trials: Sequence[VoiceTrial], source: str, confidence: float) -> list
     return rows
 
 
-def _off_grammar(trials: Sequence[VoiceTrial], source: str, confidence: float) -> list[Sequence[str]]:
+def _off_grammar(trials: Sequence[VoiceTrial], source: str) -> list[Sequence[str]]:
     rows: list[Sequence[str]] = []
     others = [trial for trial in trials if trial.says == OTHER]
     groups = [
@@ -145,12 +127,11 @@ def _off_grammar(trials: Sequence[VoiceTrial], source: str, confidence: float) -
     for name, some in [*groups, ("pooled", others)]:
         if not some:
             continue
-        got = [outcome(trial, confidence) for trial in some]
-        yes, orders = got.count("yes"), sum(one not in ("yes", "no", "confirm", OTHER) for one in got)
-        bound = f"{100 * clopper_pearson_upper(yes, len(got)):.1f} %"
-        rows.append(
-            (source, name, str(len(got)), str(yes), bound, str(got.count("no")), str(orders), str(got.count("confirm")))
-        )
+        got = [outcome(trial) for trial in some]
+        confirmed, orders = got.count("confirm"), sum(one not in ("yes", "no", "confirm", OTHER) for one in got)
+        bound = f"{100 * clopper_pearson_upper(confirmed, len(got)):.2f} %"
+        counts = (len(got), confirmed, bound, got.count("yes"), got.count("no"), orders)
+        rows.append((source, name, *map(str, counts)))
     return rows
 
 
@@ -161,8 +142,8 @@ def _voices(count: int, opened: list[Speech]) -> list[tuple[str, Speech, str, fl
     piper, espeak = load("speech", "piper")(), load("speech", "espeak")()
     opened += [piper, espeak]
     every = [
-        ("joe", piper, "en", 1.0), ("joe, fast", piper, "en", 1.25), ("espeak American", espeak, "en-us", 1.0),
-        ("espeak British", espeak, "en", 0.9), ("espeak Scottish", espeak, "en-gb-scotland", 0.9),
-        ("espeak New York", espeak, "en-us-nyc", 0.9),
+        ("joe", piper, "en", 1.0), ("joe, slow", piper, "en", 0.8), ("espeak Scottish", espeak, "en-gb-scotland", 0.9),
+        ("espeak New York", espeak, "en-us-nyc", 0.9), ("espeak British, woman", espeak, "en+f4", 0.9),
+        ("espeak American, man", espeak, "en-us+m7", 0.9),
     ]  # fmt: skip
     return every[:count]

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 from cyclopts import App, Parameter
 
 from mintpilot.cli.bench_flags import BenchFlags, Flag, Json, VehicleName
+from mintpilot.cli.bench_perception import perception
 from mintpilot.cli.bench_trust import trust
 from mintpilot.cli.exits import EPILOGUE, ExitCode, guarded
 
@@ -24,6 +25,7 @@ bench = App(
     result_action="return_value",
 )
 
+bench.command(perception)
 bench.command(trust)
 _USUAL = BenchFlags()
 

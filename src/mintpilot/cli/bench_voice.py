@@ -38,7 +38,6 @@ def bench_voice(clips: Path | None, *, most: int | None, voices: int, out: Path 
         for row in rows:
             table.add_row(*row)
         console.print(table)
-    console.print(f"Least probability, chosen on the other half of the clips: {result.confidence:g}")
     for note in result.notes:
         console.print(note)
     return ExitCode.SUCCESS

@@ -57,8 +57,8 @@ def look() -> Iterator[Finding]:
         return f"{name} heard '{found[0].text}'" if found else f"{name} loads"
 
     yield _tried("speech", spoken)
-    yield _tried("first recogniser", lambda: heard("whisper"))
-    yield _tried("second recogniser", lambda: heard("moonshine"))
+    yield _tried("first recogniser", lambda: heard("moonshine"))
+    yield _tried("second recogniser", lambda: heard("whisper"))
     yield _tried("voice activity", lambda: f"{load('activity', 'silero')().window} samples at a time")
     duplex = "cancelled" if EchoCanceller().is_full_duplex else "no canceller: deaf while the drone speaks"
     yield Finding(name="echo", ok=True, needed=False, found=duplex)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Sequence
+from io import TextIOWrapper
 from pathlib import Path
 from typing import Annotated, Literal, TypeAlias
 
@@ -11,7 +12,7 @@ from cyclopts import App, CycloptsError, Parameter, validators
 
 from mintpilot import __version__
 from mintpilot.cli.bench import bench
-from mintpilot.cli.exits import EPILOGUE, ExitCode, fail, guarded
+from mintpilot.cli.exits import EPILOGUE, ExitCode, fail, guarded, verdict_on
 from mintpilot.cli.exporting import export
 from mintpilot.cli.interrupts import listen
 from mintpilot.cli.logs import log, runs
@@ -224,6 +225,7 @@ def vehicle_double(
     port: Annotated[int, Parameter(validator=validators.Number(gte=1, lte=65535))] = 14540,
     fault: Annotated[list[str] | None, Parameter(negative="")] = None,
     mission: Path | None = None,
+    camera: int | None = None,
     seed: Seed = None,
     debug: Flag = False,
 ) -> ExitCode:
@@ -235,12 +237,14 @@ def vehicle_double(
         fault: NAME@SECONDS, what goes wrong, and when; may be given several times. Names: silence, heartbeat,
             refuse-arm, position-lost, position-jump, delay, reorder, duplicate, corrupt, pilot, battery, no-gripper.
         mission: The mission in whose world it flies. Default: nothing is around it.
+        camera: Port for pictures of that world, drawn where the double says it is: the frame source sim://127.0.0.1:PORT.
+            Default: none.
         seed: Of the world, and of what is drawn at random. Default: as the file says.
         debug: Show the traceback of an error.
     """
     from mintpilot.cli.vehicle_double import serve_double
 
-    return guarded(lambda: serve_double(flavour, port, fault or [], mission, seed), as_json=False, debug=debug)
+    return guarded(lambda: serve_double(flavour, port, fault or [], mission, seed, camera), as_json=False, debug=debug)
 
 
 @app.command(
@@ -312,6 +316,7 @@ def see(
     longest: Annotated[int, Parameter(validator=validators.Number(gte=1))] = 200,
     perception: str = "segments",
     namer: Annotated[list[str], Parameter(name="--namer", negative="")] = [],  # noqa: B006
+    calibration: Path | None = None,
     seed: Seed = None,
     out: Path | None = None,
     json: Json = False,
@@ -334,6 +339,7 @@ def see(
         perception: Who makes objects of pictures: segments, geometric, or a plug-in's.
         namer: Who names what segments finds: geometry, ocr (text on things), vision (a vision-language model at
             MINTPILOT_VLM_URL), or a plug-in's; may be given several times. Default: geometry.
+        calibration: Measured confidences of the namers, as mintpilot bench perception --calibrate writes them.
         seed: Of simulated sources. Default: 0.
         out: Folder for map and report.
         json: Print one JSON object, and nothing else, on standard output.
@@ -355,7 +361,14 @@ def see(
     )
     return guarded(
         lambda: see_pictures(
-            source, options, perception=perception, namers=namer, instruction=instruction, out=out, as_json=json
+            source,
+            options,
+            perception=perception,
+            namers=namer,
+            calibration=calibration,
+            instruction=instruction,
+            out=out,
+            as_json=json,
         ),
         as_json=json,
         debug=debug,
@@ -453,6 +466,7 @@ app.command(
     help_epilogue=examples(
         "mintpilot export mission.yaml --to plan --out mission.plan",
         "mintpilot export runs/2026-11-28T10-00-00-survey --to wpl --firmware ardupilot",
+        "mintpilot export fire-warehouse --to usd --out warehouse.usda",
     ),
 )
 
@@ -482,12 +496,16 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Runs the program with these words (default: those of the command line); returns its exit code."""
     words = list(sys.argv[1:] if arguments is None else arguments)
     listen()
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, TextIOWrapper):
+            stream.reconfigure(errors="replace")  # a narrow encoding must not end a flight
     try:
         code = app(words, exit_on_error=False, print_error=False)
     except CycloptsError as error:
         return fail(f"{error}; see mintpilot --help", as_json="--json" in words)
-    except KeyboardInterrupt:
-        return ExitCode.INTERRUPTED
+    except KeyboardInterrupt as stopped:
+        code, message = verdict_on(stopped)
+        return fail(message, as_json="--json" in words, code=code)
     return int(code or 0)
 
 

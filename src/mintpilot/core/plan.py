@@ -106,6 +106,8 @@ class Shortage(StrEnum):
     """What it would deliver is not picked up."""
     ANSWER = "answer"
     """Which of several places is meant is not known."""
+    UNSEEN = "unseen"
+    """It is none of the things that were seen."""
     PRICE = "price"
     """The flight would cost more than leaving it undone."""
 
@@ -137,6 +139,8 @@ class LeftUndone:
                 return "what it needs is not picked up"
             case Shortage.ANSWER:
                 return "which one is meant is not known"
+            case Shortage.UNSEEN:
+                return "it is none of the things that were seen"
 
 
 def _seconds(needed: float, given: float) -> tuple[str, str]:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from mintpilot.core.gap import NOWHERE
 from mintpilot.core.geometry import Floats
 from mintpilot.core.plan import LeftUndone, Shortage, Stop
 from mintpilot.core.task import Action
@@ -255,6 +256,8 @@ class Selector:
         resource = Shortage.WAY
         if values.get(stop.gap) == "":
             resource = Shortage.ANSWER
+        elif values.get(stop.gap) in NOWHERE:
+            resource = Shortage.UNSEEN
         elif _picked_for(stop, self._itinerary.ordered) is not None and self._itinerary.place(stop, values):
             resource = Shortage.THING
         return LeftUndone(stop=stop, resource=resource)

