@@ -101,7 +101,11 @@ class AskingSettings:
         why="answers that are wrong half the time tell nothing",
     )
     floor: float = setting(1e-6, "Joint hypotheses below this probability are not planned for.", least=0, below=1)
-    question_price_s: float = setting(0.0, "What a question costs the person, in seconds of flight.", least=0)
+    question_price_s: float = setting(
+        0.0,
+        "What a question costs the person, in seconds of flight: asking stops where no policy of asking is worth it.",
+        least=0,
+    )
     failure_price_s: float = setting(
         600.0,
         "What a failed mission counts for, in seconds of flight, where expected losses are weighed.",

@@ -128,6 +128,8 @@ class StopReason(StrEnum):
     """The operator does not answer."""
     INFEASIBLE = "infeasible"
     """No plan exists under any hypothesis that is left."""
+    PRICE = "price"
+    """No policy of asking on is worth its questions' price."""
     WAITING = "waiting"
     """Waiting for an answer may lose more than the answer gives: the battery runs meanwhile."""
     NEVER_ASKS = "never-asks"

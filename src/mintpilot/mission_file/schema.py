@@ -22,6 +22,7 @@ from mintpilot.mission_file.schema_base import (
     Seconds,
     Several,
     Spec,
+    ThinkWords,
     Words,
 )
 from mintpilot.mission_file.schema_world import World
@@ -170,7 +171,7 @@ class OperatorSpec(Spec):
     """Probability of answering that it does not know."""
     silence: Probability = 0.0
     """Probability of not answering."""
-    latency_s: NotNegative | Seconds = 0.0
+    latency_s: NotNegative | ThinkWords = 0.0
     """Time taken for an answer, seconds, on the mission's clock; `2..8`: drawn evenly between the two."""
 
 
