@@ -19,6 +19,7 @@ import subprocess
 import sys
 from collections import defaultdict
 from pathlib import Path
+from xml.etree import ElementTree
 
 from scipy.stats import binomtest
 
@@ -27,8 +28,10 @@ from bench.sections import ROOT, Section, Table, keep
 
 ROOMS = ("reasoning", "elicitation", "planning/checks.py", "mission", "mapping/fusion.py", "mapping/knowledge.py")
 FOLDER = ROOT / "runs" / "mutants"
-TIME_S = 120.0
-"""Seconds that the tests of one mutant may take; a mutant that runs on for longer has been noticed."""
+TESTS_S = 60.0
+"""Each mutant is tried against the tests that reach its line, the quickest first, up to so many seconds of them."""
+HANGS = 5.0
+"""A mutant whose tests take so many times as long as they do without it, and a minute more, has been noticed."""
 
 
 def all_mutants() -> list[Mutant]:
@@ -55,9 +58,20 @@ def make_map(tests: list[str]) -> None:
     import coverage
 
     FOLDER.mkdir(parents=True, exist_ok=True)
-    data, settings = FOLDER / "coverage", FOLDER / "coverage.ini"
+    data, settings, times = FOLDER / "coverage", FOLDER / "coverage.ini", FOLDER / "times.xml"
     settings.write_text(f"[run]\nsource = mintpilot\ndynamic_context = test_function\ndata_file = {data}\n")
-    words = ["run", f"--rcfile={settings}", "-m", "pytest", "-n", "0", "-p", "no:cacheprovider", *tests]
+    words = [
+        "run",
+        f"--rcfile={settings}",
+        "-m",
+        "pytest",
+        "-n",
+        "0",
+        "-p",
+        "no:cacheprovider",
+        f"--junitxml={times}",
+        *tests,
+    ]
     subprocess.run([sys.executable, "-m", "coverage", *words], cwd=ROOT, check=True)
     read = coverage.CoverageData(str(data))
     read.read()
@@ -84,12 +98,31 @@ def _test_of(context: str) -> str | None:
     return None
 
 
-def tried(mutant: Mutant, reached: dict[str, dict[str, list[str]]]) -> str:
+def durations() -> dict[str, float]:
+    """Seconds that each test function and each file of tests takes, all its cases together."""
+    found: dict[str, float] = defaultdict(float)
+    for case in ElementTree.parse(FOLDER / "times.xml").iter("testcase"):
+        seconds = float(case.get("time", 0))
+        where = _test_of(f"{case.get('classname', '').removeprefix('tests.')}.{case.get('name', '').partition('[')[0]}")
+        if where is not None:
+            found[where] += seconds
+            if "::" in where:
+                found[where.partition("::")[0]] += seconds
+    return found
+
+
+def tried(mutant: Mutant, reached: dict[str, dict[str, list[str]]], seconds: dict[str, float]) -> str:
     """``killed``, ``survived``, or ``not reached`` by any test."""
     lines = reached.get(mutant.file, {})
-    tests = sorted({t for line in range(mutant.line, mutant.last + 1) for t in lines.get(str(line), ())})
-    if not tests:
+    found = {t for line in range(mutant.line, mutant.last + 1) for t in lines.get(str(line), ())}
+    if not found:
         return "not reached"
+    tests, total_s = [], 0.0
+    for test in sorted(found, key=lambda t: (seconds.get(t, 0.0), t)):
+        if tests and total_s + seconds.get(test, 0.0) > TESTS_S:
+            break
+        tests.append(test)
+        total_s += seconds.get(test, 0.0)
     copy = FOLDER / "copy"
     shutil.rmtree(copy, ignore_errors=True)
     shutil.copytree(ROOT / "src", copy / "src", ignore=shutil.ignore_patterns("*.nbi", "*.nbc", "*.pyc"))
@@ -97,13 +130,16 @@ def tried(mutant: Mutant, reached: dict[str, dict[str, list[str]]]) -> str:
     target.write_text(mutant.applied(target.read_text(encoding="utf-8")), encoding="utf-8")
     environment = {
         **os.environ,
+        "HYPOTHESIS_PROFILE": "repeatable",
         "PYTHONPATH": str(copy / "src"),
         "PYTHONDONTWRITEBYTECODE": "1",
         "NUMBA_CACHE_DIR": str(FOLDER / "numba"),
     }
     words = [sys.executable, "-m", "pytest", "-n", "0", "-x", "-q", "-p", "no:cacheprovider", *tests]
     try:
-        done = subprocess.run(words, cwd=ROOT, env=environment, capture_output=True, timeout=TIME_S, check=False)
+        done = subprocess.run(
+            words, cwd=ROOT, env=environment, capture_output=True, timeout=60 + HANGS * total_s, check=False
+        )
     except subprocess.TimeoutExpired:
         return "killed"
     return "survived" if done.returncode == 0 else "killed"
@@ -125,8 +161,8 @@ def section(results: dict[str, str], chosen: list[Mutant], wanted: int) -> Secti
         name="71-mutants",
         title="Small faults that the tests notice",
         command=f"python -m bench.mutants --sample {wanted}",
-        how=f"{len(by_room['**all**'])} of a stratified random sample of {wanted}, each against the default tests that "
-        "reach its line. One that no test reaches counts as alive.",
+        how=f"{len(by_room['**all**'])} of a stratified random sample of {wanted}, each against the tests that reach "
+        f"its line, the quickest first, up to {TESTS_S:.0f} s of them. One that no test reaches counts as alive.",
         tables=[Table(caption="", header=("room", "tried", "killed", "share killed, exact 95 %"), rows=rows)],
         notes=[f"alive: `{m.file}` line {m.line}: {m.what} ({results[m.id]})" for m in alive],
     )
@@ -145,11 +181,12 @@ def main() -> None:
         make_map(args.tests)
         return
     reached = json.loads((FOLDER / "map.json").read_text())
+    seconds = durations()
     kept = FOLDER / "results.json"
     results: dict[str, str] = json.loads(kept.read_text()) if kept.exists() else {}
     chosen = all_mutants()[: args.sample]
     for mutant in [m for m in chosen if m.id not in results][: args.most]:
-        results[mutant.id] = tried(mutant, reached)
+        results[mutant.id] = tried(mutant, reached, seconds)
         kept.write_text(json.dumps(results, indent=1))
         print(f"{results[mutant.id]:12} {mutant.file}:{mutant.line} {mutant.what}", flush=True)
     done = section(results, chosen, args.sample)

@@ -11,60 +11,29 @@ import json
 import math
 import sys
 from collections import Counter
+from dataclasses import asdict
 from pathlib import Path
 
 import numpy as np
-from PIL import Image
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "perception"))
 from real_things import DESK, REPORTED, RGBD, TABLETOP, TUNED, place, room_places
 
 from mintpilot.assembly.seeing import see
 from mintpilot.assembly.sources import open_source
+from mintpilot.benchmark.labelled_frames import count_frames, labelled_frames
 from mintpilot.core.ports import SourceOptions
 from mintpilot.frames.aligned import AlignedFrames
-from mintpilot.perception.bodies import bodies_of
-from mintpilot.perception.settings import PerceptionSettings
-from mintpilot.perception.view import look_at
 
-FOUND = 0.5
 NEAR_M = 0.15
 HAZARDS = ("person", "fire", "smoke", "door")
 
 
-def tabletop(numbers: tuple[int, ...]) -> dict[str, float | int | str]:
+def tabletop(numbers: tuple[int, ...]) -> dict[str, float | int]:
     """Things found, split, merged and false, and overlap, on labelled frames."""
-    total = Counter[str]()
-    overlaps, recalls, precisions = [], [], []
-    for number in numbers:
-        base = TABLETOP / f"learn{number}"
-        options = SourceOptions(color=Path(f"{base}_color.jpg"), depth=Path(f"{base}_depth.png"))
-        (frame,) = AlignedFrames(open_source("", options))
-        label = np.asarray(Image.open(f"{base}_label.png")).astype(int)
-        truth = np.where(label >= 10, label // 10, 0)
-        masks = [b.mask for b in bodies_of(look_at(frame, PerceptionSettings()), 0.0).things]
-        shares = np.array([[(m & (truth == k)).sum() for m in masks] for k in np.unique(truth) if k], float)
-        areas = np.array([(truth == k).sum() for k in np.unique(truth) if k], float)
-        sizes = np.array([m.sum() for m in masks], float)
-        iou = shares / (areas[:, None] + sizes[None] - shares)
-        best = iou.max(axis=1)
-        total["things"] += len(areas)
-        total["found"] += int((best > FOUND).sum())
-        total["split"] += int(((shares > 0.2 * areas[:, None]).sum(axis=1) > 1).sum())
-        total["merged"] += int(((shares > 0.2 * sizes[None]).sum(axis=0) > 1).sum())
-        total["false"] += int((iou.max(axis=0) <= FOUND).sum())
-        overlaps += best.tolist()
-        picked = iou.argmax(axis=1)
-        recalls += (shares[np.arange(len(areas)), picked] / areas).tolist()
-        precisions += (shares[np.arange(len(areas)), picked] / sizes[picked]).tolist()
-    return {
-        "frames": len(numbers),
-        **total,
-        "false_per_frame": round(total["false"] / len(numbers), 3),
-        "mean_iou": round(float(np.mean(overlaps)), 3),
-        "overlap_recall": round(float(np.mean(recalls)), 3),
-        "overlap_precision": round(float(np.mean(precisions)), 3),
-    }
+    counts = count_frames(labelled_frames(TABLETOP, frozenset(f"learn{n}" for n in numbers)))
+    shown = {key: round(value, 3) if isinstance(value, float) else value for key, value in asdict(counts).items()}
+    return {**shown, "false_per_frame": round(counts.false / counts.frames, 3)}
 
 
 def living_room() -> dict[str, object]:

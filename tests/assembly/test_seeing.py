@@ -16,6 +16,7 @@ from mintpilot import plan_mission
 from mintpilot.assembly.seeing import see
 from mintpilot.assembly.sources import open_source
 from mintpilot.cli.main import main
+from mintpilot.core.gap import NOWHERE
 from mintpilot.core.ports import SourceOptions
 from mintpilot.frames.aligned import AlignedFrames
 from mintpilot.mission_file.reader import find_problems
@@ -51,7 +52,22 @@ def test_a_recording_becomes_things_a_map_and_a_world_for_missions(tmp_path: Pat
     assert find_problems(mission) == []
     planned = plan_mission(mission)
     assert [gap.kind for gap in planned.gaps] == ["target"]
-    assert set(planned.gaps[0].values) == {o.id for o in map_.objects if o.label == "box"}
+    assert set(planned.gaps[0].values) == {o.id for o in map_.objects if o.label == "box"} | set(NOWHERE)
+
+
+def test_one_thing_that_may_be_meant_is_asked_about(tmp_path: Path) -> None:
+    save_folder(tmp_path / "walk", views(blocks=BLOCKS[:1]), poses())
+    report_on(tmp_path / "walk", out=tmp_path / "seen")
+    mission = tmp_path / "mission.yaml"
+    mission.write_text(
+        "mintpilot: 1\nname: seen\ninstruction: pick up the box\nworld: {seen: seen}\nvehicle: {radius_m: 0.15}\n"
+    )
+    planned = plan_mission(mission)
+    (gap,) = planned.gaps
+    (box,) = gap.values.keys() - set(NOWHERE)
+    assert set(NOWHERE) < gap.values.keys()
+    assert planned.query is not None
+    assert box in planned.query.id
 
 
 def test_a_folder_that_is_none_and_one_that_is_broken_are_named(tmp_path: Path) -> None:

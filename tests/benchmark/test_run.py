@@ -164,7 +164,7 @@ def test_unknown_strategies_and_numbers_out_of_range_are_refused_before_anything
     with pytest.raises(InputError, match="--trials 0"):
         table1(trials=0, seed=0, vehicle="kinematic")
     with pytest.raises(InputError, match="--think 40"):
-        boxes(trials=1, seed=0, vehicle="kinematic", think_s=40)
+        boxes(trials=1, seed=0, vehicle="kinematic", think=40)
 
 
 def test_command_prints_one_object(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

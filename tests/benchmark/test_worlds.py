@@ -56,7 +56,9 @@ def test_methods_get_their_settings_and_only_told_ones() -> None:
     base = true_world(WAREHOUSE, 4).mission.asking
     plain, told = experiment("mint"), experiment("mint", tell_prices=True)
     condition = Condition(answer_error=0.1)
-    assert asking_for(base, plain, condition, method_of("mint")) == replace(base, answer_error=0.1)
+    assert asking_for(base, plain, condition, method_of("mint")) == replace(base, answer_error=0.1, reply_s=0.0)
+    thoughtful = experiment("mint", think_s=4.0, think_most_s=8.0)
+    assert asking_for(base, thoughtful, condition, method_of("mint")).reply_s == 6.0
     assert asking_for(base, told, condition, method_of("mint")).question_price_s == told.prices.question_s
     assert asking_for(base, plain, Condition(), VARIANTS["mint-paper"]).rule is CriticalityRule.PAPER
     blind = Condition(answer_error=0.1, believed_error=0.0)
@@ -125,8 +127,8 @@ def test_conformal_quantiles() -> None:
     for k, cell in enumerate(made.cells[:MOST_GAPS], 1):
         knowno = next(m for m in cell.methods if m.name == "knowno")
         assert knowno.arguments == {"quantile": q[str(k)]}
-        assert cell.parameters == gap_parameters(k)
-        assert sum(cell.parameters.values()) == k
+        assert cell.parameters == {**gap_parameters(k), "thinking_s": 10.0 * k}
+        assert sum(gap_parameters(k).values()) == k
     assert {cell.name for cell in made.cells[MOST_GAPS:]} == {name for name, _ in CONDITIONS}
     # No experiment flies in worlds that the method was calibrated on.
     assert FIRST_SEED > 10_000

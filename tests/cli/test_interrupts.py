@@ -14,14 +14,14 @@ END = MissionEnded(verdict=Verdict(outcome=Outcome.SUCCESS, reason="done"))
 
 @pytest.fixture
 def listening():
-    before = signal.getsignal(signal.SIGINT), signal.getsignal(signal.SIGTERM)
+    before = [(number, signal.getsignal(number)) for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)]
     interrupts.listen()
     yield
-    signal.signal(signal.SIGINT, before[0])
-    signal.signal(signal.SIGTERM, before[1])
+    for number, handler in before:
+        signal.signal(number, handler)
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_an_interrupt_that_a_library_drops_counts_at_the_next_event(listening, number):
     with pytest.raises(KeyboardInterrupt):
         signal.raise_signal(number)  # as if this were dropped by a destructor

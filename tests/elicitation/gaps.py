@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from mintpilot.core.gap import Candidate, GapKind, KnowledgeGap
 from mintpilot.core.observation import Attribute
 
@@ -14,6 +16,11 @@ def smoke(name: str, description: str) -> KnowledgeGap:
 
 def room(name: str, description: str) -> KnowledgeGap:
     return _gap(f"presence:{name}", GapKind.PRESENCE, description, ("present", "absent"))
+
+
+def figure() -> KnowledgeGap:
+    words = "the chest-high grey thing on the floor"
+    return replace(_gap("presence:figure", GapKind.PRESENCE, words, ("present", "absent")), is_thing=True)
 
 
 def width() -> KnowledgeGap:

@@ -10,7 +10,7 @@ from mintpilot.core.query import Combine, Literal, Query, Saying, SayingKind
 from mintpilot.elicitation.candidates import gap_literals
 from mintpilot.elicitation.wording import word_question
 
-from .gaps import ALL, START, boxes, smoke
+from .gaps import ALL, START, boxes, figure, smoke
 
 LITERALS = {g.id: gap_literals(g, START) for g in ALL}
 SINGLES = [Query(literals=(x,)) for several in LITERALS.values() for x in several]
@@ -58,6 +58,17 @@ def test_a_second_attempt_uses_other_words(query: Query) -> None:
     assert one.text != two.text
     assert one.query == two.query
     assert (one.attempt, two.attempt) == (1, 2)
+
+
+def test_of_a_thing_it_is_asked_whether_it_is_a_person_and_not_who_is_inside() -> None:
+    about = figure()
+    query = Query(literals=gap_literals(about, START))
+    said = word_question(query, [about], None)
+    assert said.text == "Is the chest-high grey thing on the floor a person?"
+    assert (said.yes_means, said.no_means) == ("I fly to it", "I fly past it")
+    assert word_question(query, [about], None, attempt=2).text == (
+        "Is this somebody: the chest-high grey thing on the floor?"
+    )
 
 
 def test_different_single_cuts_are_worded_differently() -> None:

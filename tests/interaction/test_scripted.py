@@ -14,6 +14,7 @@ from mintpilot.core.errors import InputError
 from mintpilot.core.gap import GapKind, KnowledgeGap
 from mintpilot.core.inputs import Ordered, QuestionShown
 from mintpilot.core.query import Answer, Combine, Literal, Order, Query, Question, Reply, Saying, SayingKind
+from mintpilot.core.think_time import ThinkTime
 from mintpilot.interaction.scripted import FunctionOperator, RecordedOperator, ScriptedOperator
 
 
@@ -41,8 +42,8 @@ class Truth:
         return self.values.get(gap.id)
 
 
-def ask(asked: Question, **options) -> Answer:
-    rng = np.random.default_rng(0)
+def ask(asked: Question, seed: int = 0, **options) -> Answer:
+    rng = np.random.default_rng(seed)
     return put(ScriptedOperator(Truth(x="a", y="b"), rng=rng, **options), asked, 10.0)
 
 
@@ -55,8 +56,8 @@ def test_the_truth_is_told():
 
 
 def test_latency_is_reported_and_beyond_the_patience_it_is_silence():
-    assert ask(question(("x", {"a"})), latency_s=4.5).latency_s == 4.5
-    late = ask(question(("x", {"a"})), latency_s=11)
+    assert ask(question(("x", {"a"})), think=ThinkTime(4.5, 4.5)).latency_s == 4.5
+    late = ask(question(("x", {"a"})), think=ThinkTime(11, 11))
     assert (late.reply, late.latency_s) == (Reply.TIMEOUT, 10.0)
 
 
@@ -97,8 +98,8 @@ def test_rates_that_are_none_are_refused(options):
 
 
 def test_negative_latency_is_refused():
-    with pytest.raises(InputError, match="latency_s"):
-        ScriptedOperator(Truth(), rng=np.random.default_rng(0), latency_s=-1)
+    with pytest.raises(InputError, match="from 0 on"):
+        ScriptedOperator(Truth(), rng=np.random.default_rng(0), think=ThinkTime(-1, 2))
 
 
 def test_recorded_answers_come_in_order_then_silence():
@@ -115,7 +116,7 @@ def test_recorded_answers_come_in_order_then_silence():
 
 def test_an_answer_takes_its_time_and_better_words_change_nothing():
     asked = question(("x", {"a"}))
-    operator = ScriptedOperator(Truth(x="a"), rng=np.random.default_rng(0), latency_s=2.0)
+    operator = ScriptedOperator(Truth(x="a"), rng=np.random.default_rng(0), think=ThinkTime(2.0, 2.0))
     operator.show(replace(asked, id="q1"), 10.0)
     shown = operator.poll(5.0)
     assert [type(event) for event in shown] == [QuestionShown]
@@ -126,8 +127,22 @@ def test_an_answer_takes_its_time_and_better_words_change_nothing():
     assert operator.poll(20.0) == ()
 
 
+def test_thinking_is_drawn_between_its_bounds_and_disturbs_no_answer():
+    times = [ask(question(("x", {"a"})), think=ThinkTime(2, 8), seed=s).latency_s for s in range(50)]
+    assert 2 <= min(times) < 3 < 7 < max(times) <= 8
+    same = [ask(question(("x", {"a"})), unsure_rate=0.5, think=t, seed=3).reply for t in (ThinkTime(), ThinkTime(2, 8))]
+    assert same[0] is same[1]
+
+
+def test_who_thinks_longer_than_the_patience_still_answers_while_the_question_is_open():
+    operator = ScriptedOperator(Truth(x="a"), rng=np.random.default_rng(0), think=ThinkTime(5, 5))
+    operator.show(replace(question(("x", {"a"})), id="q1"), 3.0)
+    operator.poll(0.0)
+    assert [event.answer.reply for event in operator.poll(5.0)] == [Reply.YES]
+
+
 def test_what_is_withdrawn_is_not_answered():
-    operator = ScriptedOperator(Truth(x="a"), rng=np.random.default_rng(0), latency_s=2.0)
+    operator = ScriptedOperator(Truth(x="a"), rng=np.random.default_rng(0), think=ThinkTime(2.0, 2.0))
     operator.show(replace(question(("x", {"a"})), id="q1"), 10.0)
     operator.poll(0.0)
     operator.withdraw("q1", "nobody needs to know any more")

@@ -299,10 +299,62 @@ def test_at_a_terminal_only_what_is_typed_after_the_question_answers_it(terminal
     terminal.expect("Your answer")
     terminal.type(b"y\nn\nn\n")
     terminal.expect("got yes")
-    terminal.expect("Your answer", times=2)
+    terminal.expect("The drone asks", times=2)
+    terminal.expect("5 s  Your answer", times=2)
     terminal.type(b"?\n")
     terminal.expect("got unsure")
     assert "got no" not in terminal.seen
+
+
+def test_at_a_terminal_a_letter_answers_alone_and_not_while_more_is_typed(terminal):
+    terminal.expect("Your answer")
+    terminal.type(b"y")
+    terminal.expect("got yes")
+    terminal.expect("The drone asks", times=2)
+    terminal.expect("5 s  Your answer", times=2)
+    terminal.type(b"n")
+    time.sleep(0.1)
+    terminal.type(b"\x7fye")
+    time.sleep(0.8)
+    assert "got" not in terminal.seen.partition("got yes")[2], "two letters wait for Enter"
+    terminal.type(b"\x15?")
+    terminal.expect("got unsure")
+    assert terminal.seen.count("4 s  Your answer") >= 1, "the seconds that are left are counted down"
+
+
+def test_a_letter_that_answers_nothing_waits_for_the_rest_of_its_word(terminal):
+    terminal.expect("Your answer")
+    terminal.type(b"w")
+    time.sleep(0.8)
+    terminal.type(b"ait\n")
+    time.sleep(0.2)
+    terminal.type(b"no\n")
+    terminal.expect("got no")
+    assert "do not understand" not in terminal.seen
+
+
+class FewNotes:
+    """A map and a reason."""
+
+    def draw(self, question: Question) -> tuple[Path, ...]:
+        return (Path("runs/1/questions/q-1-map.png"),)
+
+    def why(self, question: Question) -> tuple[str, ...]:
+        return ("The best plan takes 16.0 s or 18.3 s.",)
+
+
+@pytest.mark.parametrize(("back", "told"), [(b"show", "q-1-map.png"), (b"why", "16.0 s or 18.3 s")])
+def test_questions_back_are_answered_and_the_question_stays_open(pipe, back, told):
+    shown, talk = io.StringIO(), Talk()
+    console = Console(file=shown, width=80)
+    asked = TerminalOperator(console, pipe, understand=talk.understand, order_of=talk.order_of, notes=FewNotes())
+    pipe.say(back + b"\nno\n")
+    assert put(asked, ASKED, 5.0, real=True).reply is Reply.NO
+    assert told in shown.getvalue()
+    bare, quiet = operator(pipe)
+    pipe.say(back + b"\nno\n")
+    assert put(bare, ASKED, 5.0, real=True).reply is Reply.NO
+    assert "Nothing more is known" in quiet.getvalue()
 
 
 def test_ctrl_c_at_a_terminal_ends_the_wait_at_once(terminal):

@@ -41,7 +41,7 @@ def test_asks_about_the_smoke_and_flies_accordingly(toxic: bool) -> None:
 
 
 def test_silence_means_the_cautious_way() -> None:
-    record, path, _ = fly(hall(toxic=False), RecordedOperator([]))
+    record, path, _ = fly(hall(toxic=False, asking={"while_waiting": "hold"}), RecordedOperator([]))
     assert record.outcome is Outcome.SUCCESS
     assert not enters_cloud(path)
     assert record.certificate is not None
@@ -131,7 +131,7 @@ def test_the_first_of_several_operators_counts() -> None:
 def test_waiting_for_an_answer_takes_mission_time() -> None:
     def seconds(latency_s: float) -> float:
         operator = RecordedOperator([Answer(reply=Reply.NO, latency_s=latency_s, text="no")])
-        _, _, events = fly(hall(), operator)
+        _, _, events = fly(hall(asking={"while_waiting": "hold"}), operator)
         return float([e for e in events if isinstance(e, LegFlown)][-1].log.time_s[-1])
 
     assert seconds(10.0) - seconds(0.0) == pytest.approx(10.0, abs=0.6)

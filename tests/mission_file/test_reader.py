@@ -285,7 +285,7 @@ def test_unreadable_yaml(tmp_path, data, line, words):
 
 def test_missing_file_and_folder(tmp_path):
     assert "there is no file" in find_problems(tmp_path / "none.yaml")[0].message
-    assert "cannot be read" in find_problems(tmp_path)[0].message
+    assert "no regular file" in find_problems(tmp_path)[0].message
 
 
 @pytest.mark.parametrize(

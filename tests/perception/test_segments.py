@@ -79,6 +79,28 @@ def test_a_shut_door_of_any_colour_is_found_in_its_wall(paint: tuple[float, floa
     assert np.linalg.norm(np.asarray(doors[0].position_m)[:2] - (4.0, 0.15)) < 0.15
 
 
+@pytest.mark.parametrize("frame_colour", [(0.5, 0.5, 0.46), (0.72, 0.72, 0.68)])
+def test_a_door_in_the_colour_of_its_wall_is_found_by_its_frame(frame_colour: tuple[float, float, float]) -> None:
+    paint = (0.6, 0.6, 0.55)
+    wall = Block(lo_m=(4.0, -5.0, 0.0), hi_m=(4.2, 5.0, 3.0), colour=paint)
+    leaf = Block(lo_m=(3.99, -0.3, 0.0), hi_m=(4.0, 0.6, 2.05), colour=paint)
+    frame = [
+        Block(lo_m=(3.98, a, 0.0), hi_m=(4.0, b, top), colour=frame_colour)
+        for a, b, top in ((-0.37, -0.3, 2.12), (0.6, 0.67, 2.12))
+    ]
+    lintel = Block(lo_m=(3.98, -0.37, 2.05), hi_m=(4.0, 0.67, 2.12), colour=frame_colour)
+    doors = [d for d in detect(picture([wall, leaf, *frame, lintel], pitch_rad=0.12)) if d.label == "door"]
+    assert len(doors) == 1
+    assert np.linalg.norm(np.asarray(doors[0].position_m)[:2] - (4.0, 0.15)) < 0.15
+
+
+def test_a_wall_between_a_corner_and_a_panel_is_no_door() -> None:
+    wall = Block(lo_m=(4.0, -5.0, 0.0), hi_m=(4.2, 5.0, 3.0), colour=(0.6, 0.6, 0.55))
+    corner = Block(lo_m=(2.0, 1.0, 0.0), hi_m=(4.0, 1.2, 3.0), colour=(0.6, 0.6, 0.55))
+    stripe = Block(lo_m=(3.99, -0.06, 0.0), hi_m=(4.0, 0.0, 3.0), colour=(0.2, 0.2, 0.25))
+    assert not [d for d in detect(picture([wall, corner, stripe], pitch_rad=0.12)) if d.label == "door"]
+
+
 def test_a_bare_wall_has_no_door_and_a_sunlit_floor_no_fire() -> None:
     frame = picture([])
     glare = frame.rgb.copy()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import os
 import signal
@@ -17,8 +18,12 @@ from mintpilot import run_mission
 from mintpilot.cli.main import main
 from mintpilot.core.errors import InputError, RecordError
 from mintpilot.recording.flight_logs import log_info, recover, track_csv, track_geojson
-from mintpilot.recording.mcap_log import MCAP_FILE
+from mintpilot.recording.mcap_log import MCAP_FILE, McapRecorder
+from mintpilot.recording.record import read_record
+from mintpilot.recording.run_folder import RunFolder
 from mintpilot.recording.run_list import Run, listed, to_remove
+
+from .conftest import tell
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "my-building" / "mission.yaml"
 TOPICS = {"/map", "/grid", "/tf", "/path/planned", "/path/flown", "/log", "/gaps", "/tree", "/query", "/answer",
@@ -140,6 +145,64 @@ def test_a_flight_that_is_killed_keeps_what_was_written(tmp_path: Path) -> None:
     assert found.entries > 5
     assert recover(file, tmp_path / "m.mcap") == found.entries
     assert [one.outcome for one in listed(tmp_path)] == ["broken-off"]
+
+
+@pytest.mark.parametrize("failing", [1, 2, 5, 9, 14])
+@pytest.mark.parametrize("share", [0.0, 0.5, 0.99])
+def test_a_write_that_fails_half_way_leaves_a_readable_file_and_is_counted(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, failing: int, share: float
+) -> None:
+    whole, torn = tmp_path / "whole", tmp_path / "torn"
+    with RunFolder(whole) as folder:
+        for event in 2 * tell():
+            folder.record(event)
+    real, writes = os.pwrite, 0
+
+    def full(descriptor: int, data: memoryview, offset: int) -> int:
+        nonlocal writes
+        writes += 1
+        if writes != failing:
+            return real(descriptor, data, offset)
+        real(descriptor, data[: int(share * len(data))], offset)
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    with RunFolder(torn) as folder:
+        monkeypatch.setattr(os, "pwrite", full)
+        for event in 2 * tell():
+            folder.record(event)
+    kept, wanted = read(torn / MCAP_FILE), [(c.topic, m.sequence) for _, c, m in read(whole / MCAP_FILE)]
+    assert log_info(torn).whole
+    assert [c.topic for _, c, _ in kept if c.topic not in {t for t, _ in wanted}] == []
+    missing = [one for one in wanted if one not in {(c.topic, m.sequence) for _, c, m in kept}]
+    assert 1 <= len(missing) <= 2, "one event, of at most two messages"
+    assert {topic for topic, _ in wanted} == {c.topic for _, c, _ in kept}, "the same topic came again and is readable"
+    lost = [n.text for n in read_record(torn).notices if n.kind == "record-incomplete"]
+    assert lost == ["1 times something could not be written: the flight for viewers (No space left on device)."]
+
+
+def test_a_footer_that_does_not_fit_leaves_a_file_that_can_be_mended(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    recorder = McapRecorder(tmp_path / MCAP_FILE)
+    for event in tell():
+        recorder.record(event)
+    before, real, writes = (tmp_path / MCAP_FILE).stat().st_size, os.pwrite, 0
+
+    def full(descriptor: int, data: memoryview, offset: int) -> int:
+        nonlocal writes
+        writes += 1
+        if writes == 1:
+            return real(descriptor, data, offset)
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(os, "pwrite", full)
+    with pytest.raises(OSError, match="No space left"):
+        recorder.close()
+    assert (tmp_path / MCAP_FILE).stat().st_size == before
+    monkeypatch.undo()
+    found = log_info(tmp_path / MCAP_FILE)
+    assert not found.whole
+    assert recover(tmp_path / MCAP_FILE, tmp_path / "m.mcap") == found.entries == len(read(tmp_path / "m.mcap"))
 
 
 def test_pruning_names_what_goes_and_removes_it_only_when_told(

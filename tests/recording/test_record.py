@@ -33,7 +33,19 @@ from mintpilot.recording.terminal_report import print_report
 
 from .conftest import flight, way
 
-KEYS = {"outcome", "achieved", "left", "questions", "gaps", "flight", "timings_s", "seed", "run_dir", "schema_version"}
+KEYS = {
+    "outcome",
+    "achieved",
+    "left",
+    "questions",
+    "gaps",
+    "waiting",
+    "flight",
+    "timings_s",
+    "seed",
+    "run_dir",
+    "schema_version",
+}
 
 
 def record_of(events) -> MissionRecord:

@@ -4,7 +4,17 @@ from __future__ import annotations
 
 import pytest
 
-from mintpilot.core.gap import ABSENT, BLOCKED, PASSABLE, PRESENT, Candidate, GapKind, KnowledgeGap
+from mintpilot.core.gap import (
+    ABSENT,
+    BLOCKED,
+    NONE_OF_THEM,
+    NOT_YET_SEEN,
+    PASSABLE,
+    PRESENT,
+    Candidate,
+    GapKind,
+    KnowledgeGap,
+)
 from mintpilot.core.geometry import Vec3
 from mintpilot.simulation.scenarios import make_scenario
 from mintpilot.simulation.truth import SceneTruth
@@ -78,3 +88,10 @@ def test_a_phrase_for_a_person_means_the_injured_one() -> None:
 def test_an_ordered_quantity_is_not_known() -> None:
     scene = make_scenario("medicine-boxes", 0).scene
     assert SceneTruth(scene).value_of(gap(GapKind.VALUE, scene.start_m, "1", "2")) is None
+
+
+def test_where_the_thing_meant_is_no_candidate_it_is_none_of_them() -> None:
+    scene = make_scenario("medicine-boxes", 3).scene
+    wrong = Candidate(id="thing-1", position_m=scene.start_m)
+    about = gap(GapKind.TARGET, scene.start_m, "thing-1", NONE_OF_THEM, NOT_YET_SEEN, candidates=(wrong,))
+    assert SceneTruth(scene, tolerance_m=0.1).value_of(about) == NONE_OF_THEM

@@ -10,8 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mintpilot.core.errors import InputError
-from mintpilot.core.gap import ABSENT, BLOCKED, PASSABLE, PRESENT, GapKind, KnowledgeGap
-from mintpilot.core.observation import RegionKind
+from mintpilot.core.gap import ABSENT, BLOCKED, NOWHERE, PASSABLE, PRESENT, GapKind, KnowledgeGap
+from mintpilot.core.observation import NameGuess, RegionKind
 from mintpilot.core.plan import VehicleLimits
 from mintpilot.core.semantic_map import Knowledge
 from mintpilot.core.task import Action, Avoidance, Reference, SubGoal, Task
@@ -31,6 +31,7 @@ MEDICINE = Task(
         step(Action.DELIVER, "the injured person", "person", condition="injured"),
     ),
 )
+EVERYBODY = SubGoal(action=Action.GO, reference=Reference(phrase="everybody", label="person", every=True))
 SEARCH = Task(
     instruction="Find the injured person and check whether anyone else is hurt",
     subgoals=(step(Action.GO, "the injured person", "person"),),
@@ -51,6 +52,41 @@ def test_several_matches_are_a_target_gap_with_candidates_told_apart() -> None:
     assert (deliver.id, deliver.gap, deliver.sites[0].label) == ("deliver:2", "", "person-1")
     assert deliver.sites[0].reach_m == pytest.approx(1.5)
     assert findings.problems == ()
+
+
+@pytest.mark.parametrize("sure", [0.2, 0.5, 0.9])
+def test_one_match_of_a_weak_name_is_asked_about_and_may_be_none_of_them(sure: float) -> None:
+    weak = replace(RED, names=(NameGuess(label="box", probability=sure),))
+    (gap,) = find_gaps(world([weak, PERSON]), MEDICINE, start_m=START_M).gaps
+    assert gap.values == ("box-1", *NOWHERE)
+    assert gap.prior == pytest.approx((0.9 * sure, 0.9 * (1 - sure), 0.1))
+    assert [c.id for c in gap.candidates] == ["box-1"]
+
+
+def test_a_sure_name_is_bound_and_among_several_the_weak_ones_leave_none_of_them() -> None:
+    sure = replace(RED, names=(NameGuess(label="box", probability=0.97),))
+    assert find_gaps(world([sure, PERSON]), MEDICINE, start_m=START_M).gaps == ()
+    weak = replace(BLUE, names=(NameGuess(label="box", probability=0.4),))
+    (gap,) = find_gaps(world([sure, weak, PERSON]), MEDICINE, start_m=START_M).gaps
+    assert gap.values == ("box-1", "box-2", *NOWHERE)
+    assert gap.prior[0] > gap.prior[1] > 0
+    assert gap.prior[2] < 0.03
+
+
+def test_a_doubtful_person_is_asked_about_by_who_seeks_people_and_visited_only_where_it_is_one() -> None:
+    doubtful = replace(thing("object-1", "object", (8, 4, 0.4)), names=(NameGuess(label="person", probability=0.4),))
+    hardly = replace(thing("object-2", "object", (9, 4, 0.4)), names=(NameGuess(label="person", probability=0.2),))
+    map_ = world([doubtful, hardly, PERSON])
+    findings = find_gaps(map_, replace(SEARCH, subgoals=(EVERYBODY,)), start_m=START_M)
+    (gap,) = findings.gaps
+    assert (gap.id, gap.kind, gap.is_thing) == ("presence:object-1", GapKind.PRESENCE, True)
+    assert gap.prior == pytest.approx((0.4, 0.6))
+    (look,) = [s for s in findings.stops if s.optional]
+    assert (look.gap, look.sites[0].value, look.sites[0].label) == (gap.id, PRESENT, "object-1")
+    assert "object-1" not in {s.sites[0].label for s in findings.stops if not s.optional}
+    after = find_gaps(map_, replace(SEARCH, subgoals=(EVERYBODY,)), start_m=START_M, finished=frozenset({look.id}))
+    assert after.gaps == ()
+    assert not any(s.optional for s in after.stops)
 
 
 def test_one_match_is_bound_without_a_gap() -> None:

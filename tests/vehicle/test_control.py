@@ -18,7 +18,7 @@ from mintpilot.core.task import Action as StopAction
 from mintpilot.core.trajectory import Trajectory
 from mintpilot.vehicle.control_state import Phase
 from mintpilot.vehicle.course import SetPoint, straight
-from mintpilot.vehicle.signals import Act, Action, Brake, Settle
+from mintpilot.vehicle.signals import Act, Action, Brake, Fed, Settle, Tick
 
 FLAVOURS = list(Flavour)
 
@@ -200,6 +200,21 @@ def test_a_lost_link_is_known_within_two_seconds(flavour, fault, limit_s):
     assert rig.now_s - at_s <= limit_s
     rig.run(40.0)
     assert not rig.autopilot.airborne, "the autopilot's own fail-safe lands"
+
+
+def test_a_process_that_was_held_up_does_not_call_the_autopilot_silent():
+    """It was deaf itself: what came meanwhile is heard after the first tick. Real silence is told all the same."""
+    rig = flying()
+    rig.autopilot.parameters.values["COM_OF_LOSS_T"] = 10.0  # the library goes on sending the last set-point
+    held_up = replace(rig.seen, message_s=rig.now_s, heartbeat_s=rig.now_s, position_s=rig.now_s)
+    rig.now_s += 3.0
+    rig._step(Fed(time_s=rig.now_s))
+    rig._step(Tick(time_s=rig.now_s, seen=held_up))
+    rig.run(2.0)
+    assert Link.TELEMETRY not in [change.link for change in rig.changes()]
+    rig.autopilot.switch_on(Fault.SILENCE)
+    rig.run(2.0)
+    assert Link.TELEMETRY in [change.link for change in rig.changes()]
 
 
 def test_a_position_that_jumps_is_told_and_the_drone_may_only_land():

@@ -16,9 +16,9 @@ from mintpilot.assembly.preflight import preflight
 from mintpilot.assembly.worlds import build_world
 from mintpilot.cli.main import main
 from mintpilot.conformance.vehicle_double.faults import Fault, TimedFault
+from mintpilot.conformance.vehicle_double.fence import HOME_ALTITUDE_M, HOME_DEG
 from mintpilot.conformance.vehicle_double.parameters import Flavour
 from mintpilot.conformance.vehicle_double.serving import DoubleSetup, DoubleState, VehicleDouble, free_port
-from mintpilot.conformance.vehicle_double.speaking import HOME_ALTITUDE_M, HOME_DEG
 from mintpilot.core.events import Asked
 from mintpilot.core.inputs import Ordered
 from mintpilot.core.query import Order
@@ -99,7 +99,7 @@ def is_down(state: DoubleState) -> bool:
 @pytest.mark.parametrize("flavour", FLAVOURS)
 def test_the_medicine_is_brought(flavour, tmp_path):
     record, state, events = flown("medicine", flavour, tmp=tmp_path / "run")
-    assert record.outcome.value == "success"
+    assert record.outcome.value == "success", record.reason
     assert is_down(state)
     assert not state.verdict
     assert [event for event in events if isinstance(event, Asked)]
@@ -110,7 +110,7 @@ def test_the_medicine_is_brought(flavour, tmp_path):
 @pytest.mark.parametrize("flavour", FLAVOURS)
 def test_the_person_in_the_burning_warehouse_is_reached(flavour):
     record, state, events = flown("fire-warehouse", flavour)
-    assert record.outcome.value == "success"
+    assert record.outcome.value == "success", record.reason
     assert is_down(state)
     assert not state.verdict
     assert [event for event in events if isinstance(event, Asked)]
@@ -120,7 +120,7 @@ def test_the_person_in_the_burning_warehouse_is_reached(flavour):
 def test_without_a_gripper_somebody_is_asked_to_lend_a_hand():
     helper = Helper()
     record, state, _ = flown("medicine", Flavour.PX4, TimedFault(fault=Fault.NO_GRIPPER), operator=("scripted", helper))
-    assert record.outcome.value == "success"
+    assert record.outcome.value == "success", record.reason
     assert is_down(state)
     assert sum("by hand" in text for text in helper.told) == 2
 
@@ -138,7 +138,7 @@ def test_without_a_gripper_somebody_is_asked_to_lend_a_hand():
 )
 def test_a_fault_in_flight_ends_the_mission_safely(flavour, fault, outcome):
     record, state, _ = flown("medicine", flavour, later=fault)
-    assert record.outcome.value == outcome
+    assert record.outcome.value == outcome, record.reason
     assert not state.verdict
     assert state.mode in ("land", "hold", "pilot")
 
@@ -173,6 +173,6 @@ def test_a_map_that_lies_on_the_earth_and_is_turned(flavour):
         record = run_mission(
             MissionFile.model_validate(mission), base=base, vehicle=f"mavlink://udpin:127.0.0.1:{port}"
         )
-        assert record.outcome.value == "success"
+        assert record.outcome.value == "success", record.reason
         assert is_down(double.state())
         assert double.state().fence_corners == 4

@@ -8,11 +8,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 from tests.vehicle.places import room
 
+from mintpilot.conformance.vehicle_double.autopilot import DoubleAutopilot, DoubleMode
+from mintpilot.conformance.vehicle_double.body import Target
 from mintpilot.conformance.vehicle_double.faults import Fault, Wire, parse_fault
+from mintpilot.conformance.vehicle_double.fence import Fence
 from mintpilot.conformance.vehicle_double.parameters import REAL32, Flavour, Parameters
 from mintpilot.core.errors import InputError, UnknownNameError
 from mintpilot.vehicle.address import parse_address
-from mintpilot.vehicle.failsafes import apply, may_return, return_height_m, settings_for
+from mintpilot.vehicle.failsafes import apply, may_return, return_height_m, return_settings, settings_for
 from mintpilot.vehicle.local_frame import LocalFrame, frame_at
 from mintpilot.vehicle.modes import Autopilot, mode_of
 from mintpilot.vehicle.signals import Mode
@@ -129,6 +132,90 @@ def test_fail_safes_are_written_and_read_back():
     stuck.clear()
     apply(tuple(settings), held.get, put, only_read=True)
     assert held["COM_OBL_RC_ACT"] == 0.0
+
+
+def test_no_loss_of_a_remote_control_returns_where_a_return_may_hit_something():
+    for autopilot, names in [
+        (Autopilot.PX4, {"NAV_RCL_ACT": 2, "COM_FLTT_LOW_ACT": 3}),
+        (Autopilot.ARDUPILOT, {"FS_THR_ENABLE": 1, "FS_DR_ENABLE": 2}),
+    ]:
+        wanted = {s.names[0]: s for s in settings_for(autopilot, room(), returns=False)}
+        for name, returning in names.items():
+            assert returning not in (wanted[name].value, *wanted[name].also)
+
+
+def test_what_is_as_safe_is_left_as_it_is():
+    held = {"NAV_RCL_ACT": 1.0}
+    settings = [s for s in settings_for(Autopilot.PX4, room(), returns=False) if s.names[0] == "NAV_RCL_ACT"]
+    (check,) = apply(tuple(settings), held.get, lambda *_: "never asked", only_read=False)
+    assert check.ok
+    assert held == {"NAV_RCL_ACT": 1.0}
+
+
+@pytest.mark.parametrize(
+    ("autopilot", "cone"), [(Autopilot.PX4, "RTL_CONE_ANG"), (Autopilot.ARDUPILOT, "RTL_CONE_SLOPE")]
+)
+def test_a_return_keeps_its_altitude_up_to_home_and_below_the_fence(autopilot, cone):
+    wanted = {s.names[0]: s.value for s in return_settings(autopilot, room(outdoors=True), 30.0)}
+    assert wanted[cone] == 0
+    assert max(wanted.get("FENCE_ALT_MAX", 0), wanted.get("GF_MAX_VER_DIST", 0)) >= 32.0
+
+
+def test_the_fence_that_was_not_uploaded_is_not_asked_for():
+    types = [
+        {s.names[0]: s.value for s in settings_for(Autopilot.ARDUPILOT, room(), returns=False, polygon=polygon)}
+        for polygon in (False, True)
+    ]
+    assert [found["FENCE_TYPE"] for found in types] == [1, 5]
+
+
+def test_the_estimator_says_whether_the_position_is_known():
+    heard = Telemetry()
+    heard.health.local_position = True  # its sensors are well
+    heard.take("LOCAL_POSITION_NED", position(2000, 1.0), 1.0)
+    assert heard.knows_position
+    heard.take("ESTIMATOR_STATUS", {"flags": 1 | 2 | 4 | 128}, 1.1)
+    assert not heard.knows_position
+    heard.take("ESTIMATOR_STATUS", {"flags": 1 | 8 | 16}, 1.2)
+    assert heard.knows_position
+    heard.take("EKF_STATUS_REPORT", {"flags": 1 | 256}, 1.3)
+    assert heard.knows_position, "on the ground it need not be moving"
+    heard.take("HEARTBEAT", {"autopilot": 3, "custom_mode": 4, "base_mode": 128}, 1.4)
+    assert not heard.knows_position
+
+
+def test_the_double_is_as_strict_as_px4():
+    px4 = DoubleAutopilot(Flavour.PX4)
+    px4.parameters.values["NAV_DLL_ACT"] = 3
+    px4.step(20.0)
+    px4.heard_ground(245, station=False)
+    assert "No connection to the GCS" in px4.arm()
+    px4.heard_ground(245)
+    assert px4.arm() == ""
+    assert px4.change_mode(DoubleMode.FOLLOW) == "no offboard signal"
+    px4.step(31.0)
+    assert not px4.armed, "nothing came of it"
+
+
+def test_the_double_is_as_strict_as_ardupilot():
+    copter = DoubleAutopilot(Flavour.ARDUPILOT)
+    copter.parameters.values |= {"FENCE_ENABLE": 1, "FENCE_TYPE": 5, "FENCE_ALT_MAX": 4.0}
+    copter.step(20.0)
+    assert "fence" in copter.arm()
+    copter.fence = Fence(corners_m=((-5.0, -5.0), (5.0, -5.0), (5.0, 5.0), (-5.0, 5.0)))
+    assert copter.arm() == ""
+    assert copter.change_mode(DoubleMode.FOLLOW) == ""
+    copter.set_point(Target(ned_m=(0.0, 0.0, -2.0)))
+    for tick in range(100):
+        copter.step(20.0 + 0.05 * tick)
+    assert not copter.airborne, "set-points before a take-off"
+    assert copter.take_off(2.0) == ""
+    for tick in range(100):
+        copter.step(25.0 + 0.05 * tick)
+    for place in [(9.0, 0.0, -2.0), (0.0, 0.0, -6.0)]:
+        copter.set_point(Target(ned_m=place))
+        copter.step(copter._now_s + 0.05)
+        assert math.dist(copter.body.ned_m, (0.0, 0.0, -2.0)) < 0.3, "set-points outside of the fence"
 
 
 def test_the_return_altitude_is_read_in_metres():

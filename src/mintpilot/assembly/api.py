@@ -9,12 +9,14 @@ from typing import TYPE_CHECKING, TypeAlias, cast
 
 from mintpilot.assembly.components import Choices, VehicleChoice, components_for, deliberation_parts, scripted_operator
 from mintpilot.assembly.deliberation_report import DeliberationReport, deliberation_report
+from mintpilot.assembly.registry import names
 from mintpilot.assembly.strategies import Argument, strategy_label
 from mintpilot.assembly.talk import Talk, talk_for
 from mintpilot.assembly.worlds import World, build_world
 from mintpilot.core.errors import UnknownNameError
 from mintpilot.core.events import Event
 from mintpilot.core.ports import Ask, LanguageModel, Operator, Recorder
+from mintpilot.core.think_time import think_time
 from mintpilot.mission.explanations import explanations
 from mintpilot.mission.preview import preview
 from mintpilot.mission_file.reader import read_mission
@@ -96,6 +98,7 @@ def run_mission(
     vehicle: str = "mujoco",
     strategy: str = "mint",
     strategy_arguments: Mapping[str, Argument] | None = None,
+    think: str | float | None = None,
     seed: int | None = None,
     out: Path | None = None,
     progress: Progress | None = None,
@@ -116,6 +119,8 @@ def run_mission(
             ``"mavlink://udpin:127.0.0.1:14540"``.
         strategy: name of the method of asking.
         strategy_arguments: its own, e.g. ``{"quantile": 0.8}``; they override those of the file.
+        think: how long the scripted operator takes for an answer, seconds: ``5``, or drawn evenly: ``"2..8"``; default:
+            as the file says.
         seed: overrides the seed in the file.
         out: the run folder; None keeps nothing on disk but returns the record.
         progress: told about every event.
@@ -138,15 +143,19 @@ def run_mission(
         DeviceError: a real vehicle cannot be reached, or is not ready to fly.
     """
     file, folder = _opened(mission, base)
+    if think is not None:
+        think_time(think)  # what cannot be read is told before anything is worked out
+        file = file.model_copy(update={"operator": file.operator.model_copy(update={"latency_s": str(think)})})
     choices = Choices(
         strategy=strategy,
         strategy_arguments=_arguments(file, strategy, strategy_arguments),
         vehicle=vehicle_choice(vehicle),
-        address=vehicle if vehicle.startswith(SCHEME) else "",
+        address=vehicle if "://" in vehicle else "",
         accept_failsafes=accept_failsafes,
         perception=perception or file.perception.use,
         briefs=briefs,
         namers=tuple(file.perception.namers) if perception in (None, file.perception.use) else (),
+        calibration=_calibration(file, folder) if perception in (None, file.perception.use) else None,
     )
     with talk_for(file.language, llm=llm, lang=lang) as talk:
         world = build_world(file, base=folder, seed=seed, parse=talk.parse)
@@ -214,8 +223,10 @@ def vehicle_choice(name: str) -> VehicleChoice:
         UnknownNameError: there is none; the known ones are listed.
         InputError: the address of a real vehicle cannot be read.
     """
-    if name.startswith(SCHEME):
-        parse_address(name)  # a wrong one is told before anything is worked out
+    scheme, found, _ = name.partition("://")
+    if found and scheme in names("vehicle"):
+        if name.startswith(SCHEME):
+            parse_address(name)  # a wrong one is told before anything is worked out
         return VehicleChoice.MAVLINK
     simulated = [choice for choice in VehicleChoice if choice is not VehicleChoice.MAVLINK]
     if name not in simulated:
@@ -229,3 +240,7 @@ def _operator(operator: AnyOperator, world: World, file: MissionFile, talk: Talk
     if operator != "scripted":
         raise UnknownNameError("operator", operator, ["scripted"])
     return scripted_operator(world, file.operator)
+
+
+def _calibration(file: MissionFile, folder: Path) -> Path | None:
+    return None if file.perception.calibration is None else folder / file.perception.calibration

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from contextlib import AbstractContextManager, ExitStack
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -20,6 +21,7 @@ from mintpilot.core.geometry import Floats, GridFrame
 from mintpilot.core.ports import Operator, Perception, Recorder, Vehicle
 from mintpilot.core.semantic_map import SemanticMap
 from mintpilot.core.task import Action
+from mintpilot.core.think_time import think_time
 from mintpilot.elicitation.wording import word_question
 from mintpilot.mission.components import MissionComponents
 from mintpilot.mission.deliberation import DeliberationParts
@@ -45,7 +47,7 @@ class VehicleChoice(StrEnum):
     KINEMATIC = "kinematic"
     """Follows trajectories exactly; the map is what a perfect survey would show."""
     MAVLINK = "mavlink"
-    """A real vehicle; the map is given, and there is no camera."""
+    """A real vehicle, over MAVLink or by a plug-in; the map is given, and there is no camera."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -64,6 +66,8 @@ class Choices:
     perception: str = "geometric"
     namers: tuple[str, ...] = ()
     """Who names what perception finds; empty: its own way."""
+    calibration: Path | None = None
+    """File of measured confidences of the namers; None: ours."""
     camera_size: tuple[int, int] = (320, 240)
     briefs: bool = False
     """Whether go or no-go is asked before take-off. It always is where a language model read the instruction."""
@@ -113,7 +117,7 @@ def scripted_operator(world: World, spec: OperatorSpec) -> ScriptedOperator:
         answer_error=spec.answer_error,
         unsure_rate=spec.unsure,
         silence_rate=spec.silence,
-        latency_s=spec.latency_s,
+        think=think_time(spec.latency_s),
     )
 
 
@@ -171,7 +175,14 @@ class _Components(AbstractContextManager[MissionComponents]):
             wanted = tuple(dict.fromkeys(g.reference.label for g in world.task.subgoals if g.reference.label))
             from mintpilot.assembly.perceiving import Seeing, make_perception
 
-            perception = make_perception(Seeing(perception=choices.perception, namers=choices.namers, wanted=wanted))
+            perception = make_perception(
+                Seeing(
+                    perception=choices.perception,
+                    namers=choices.namers,
+                    wanted=wanted,
+                    calibration=choices.calibration,
+                )
+            )
             self._perception = perception
             builder = map_builder(world)
             surveys = world.mission.survey is not None

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final
 
 from mintpilot.assembly.registry import load
 from mintpilot.core.errors import InputError
 from mintpilot.core.ports import Namer, Perception
+from mintpilot.perception.calibration import CalibratedNamer, read_calibration, shipped_calibration
 from mintpilot.perception.recorded_vision import RecordedVision
 from mintpilot.perception.segments import SegmentPerception
 from mintpilot.perception.settings import PerceptionSettings
@@ -35,6 +36,8 @@ class Seeing:
     """Nouns that the instruction is about."""
     floor_m: float = 0.0
     """Height of the floor in the world frame, metres."""
+    calibration: Path | None = None
+    """File of confidences measured on somebody's own pictures; what it does not tell of is as we measured it."""
 
 
 def make_perception(seeing: Seeing, environment: Mapping[str, str] = os.environ) -> Perception:
@@ -46,18 +49,20 @@ def make_perception(seeing: Seeing, environment: Mapping[str, str] = os.environ)
 
     Raises:
         UnknownNameError: nobody registered the perception, or a namer.
-        InputError: that perception takes no namers, or the model has no address.
+        InputError: that perception takes no namers, the calibration cannot be read, or the model has no address.
         MissingPartError: a namer needs a part that is not installed.
     """
     make = load("perception", seeing.perception)
     settings = PerceptionSettings(floor_m=seeing.floor_m)
-    if seeing.namers:
+    if not seeing.namers and seeing.calibration is not None and issubclass(make, SegmentPerception):
+        seeing = replace(seeing, namers=("geometry",))
+    if seeing.namers or seeing.calibration is not None:
         if not issubclass(make, SegmentPerception):
             raise InputError(
-                f"perception '{seeing.perception}' names things its own way; namers go with 'segments': use that, or "
-                "leave the namers out"
+                f"perception '{seeing.perception}' names things its own way; namers and a calibration go with "
+                "'segments': use that, or leave them out"
             )
-        namers = tuple(_namer(name, seeing.wanted, environment) for name in dict.fromkeys(seeing.namers))
+        namers = tuple(calibrated_namer(name, seeing, environment) for name in dict.fromkeys(seeing.namers))
         return make(settings, namers=namers)
     try:
         made: Perception = make(settings)
@@ -71,7 +76,19 @@ def remarks_of(perception: Perception) -> Sequence[str]:
     return perception.take_remarks() if isinstance(perception, SegmentPerception) else ()
 
 
-def _namer(name: str, wanted: Sequence[str], environment: Mapping[str, str]) -> Namer:
+def calibrated_namer(name: str, seeing: Seeing, environment: Mapping[str, str] = os.environ) -> Namer:
+    """A namer with confidences as they were measured: by who flies, else by us."""
+    namer = plain_namer(name, seeing.wanted, environment)
+    if seeing.calibration is not None:
+        given = read_calibration(seeing.calibration)
+        if name in given.namers:
+            return CalibratedNamer(namer, given.namers[name], only_lowers=given.only_lowers)
+    ours = shipped_calibration()
+    return CalibratedNamer(namer, ours.namers.get(name, {}), only_lowers=ours.only_lowers)
+
+
+def plain_namer(name: str, wanted: Sequence[str] = (), environment: Mapping[str, str] = os.environ) -> Namer:
+    """A namer by its registered name, with the confidences that it says."""
     if name != VISION:
         made: Namer = load("namer", name)()
         return made

@@ -6,7 +6,7 @@ import math
 from pathlib import Path
 
 from mintpilot.assembly.components import Choices, deliberation_parts
-from mintpilot.assembly.real_vehicle import make_vehicle
+from mintpilot.assembly.real_vehicle import checked_vehicle
 from mintpilot.assembly.talk import Talk
 from mintpilot.assembly.worlds import World, build_world
 from mintpilot.core.errors import InfeasibleError
@@ -35,7 +35,7 @@ def preflight(mission: str | Path, vehicle: str, *, accept_failsafes: bool = Fal
     """
     path = Path(mission)
     world = build_world(read_mission(path), base=path.parent, seed=None)
-    link = make_vehicle(world, vehicle, accept_failsafes=accept_failsafes, only_check=True)
+    link = checked_vehicle(world, vehicle, accept_failsafes=accept_failsafes)
     try:
         return (*link.checks, *link.readiness(), _battery(world, link.battery))
     finally:

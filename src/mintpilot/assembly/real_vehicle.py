@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from typing import Protocol
+
 import numpy as np
 
+from mintpilot.assembly.registry import load
 from mintpilot.assembly.worlds import World
 from mintpilot.core.geometry import Box
+from mintpilot.core.ports import Vehicle
 from mintpilot.core.semantic_map import Cell, SemanticMap
 from mintpilot.mission.navigation import landable_cells
 from mintpilot.vehicle.envelope import SafetyEnvelope
@@ -15,17 +19,40 @@ ABOVE_LAYER_M = 0.5
 """A flat map says nothing of heights: the vehicle stays this near to its one layer, metres."""
 
 
-def make_vehicle(
-    world: World, address: str, *, accept_failsafes: bool = False, only_check: bool = False
-) -> MavlinkVehicle:
-    """The vehicle at that address, prepared on the ground; see `MavlinkVehicle` for what may go wrong."""
+class RealVehicle(Vehicle, Protocol):
+    """A vehicle that is not simulated."""
+
+    def close(self) -> None:
+        """Ends on the ground, or in hands that are not ours."""
+        ...
+
+
+def make_vehicle(world: World, address: str, *, accept_failsafes: bool = False) -> RealVehicle:
+    """The vehicle at ``NAME://PLACE``, prepared on the ground.
+
+    ``NAME`` is that of a plug-in for the port ``vehicle``; it is called with the whole address and a `SafetyEnvelope`,
+    and by name with ``endurance_s``, ``georeference`` and ``accept_failsafes``. See `MavlinkVehicle` for what may go
+    wrong.
+    """
+    vehicle: RealVehicle = load("vehicle", address.partition("://")[0])(
+        address,
+        envelope_of(world),
+        endurance_s=world.rules.endurance_s,
+        georeference=world.mission.georeference,
+        accept_failsafes=accept_failsafes,
+    )
+    return vehicle
+
+
+def checked_vehicle(world: World, address: str, *, accept_failsafes: bool) -> MavlinkVehicle:
+    """As `make_vehicle`, for preflight: every check is made, and nothing refused."""
     return MavlinkVehicle(
         address,
         envelope_of(world),
         endurance_s=world.rules.endurance_s,
         georeference=world.mission.georeference,
         accept_failsafes=accept_failsafes,
-        only_check=only_check,
+        only_check=True,
     )
 
 

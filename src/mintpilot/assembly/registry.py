@@ -91,11 +91,13 @@ BUILT_IN: Final = MappingProxyType(
                 "whisper": "mintpilot.voice.whisper:WhisperRecogniser",
             }
         ),
+        "vehicle": MappingProxyType({"mavlink": "mintpilot.vehicle.mavlink_vehicle:MavlinkVehicle"}),
         "activity": MappingProxyType({"silero": "mintpilot.voice.silero:SileroActivity"}),
     }
 )
 """Port → name → where it is. Every entry is called without arguments to make a part; one of ``frames`` with the place
-of the pictures, and what is known of them (`mintpilot.core.ports.SourceOptions`)."""
+of the pictures, and what is known of them (`mintpilot.core.ports.SourceOptions`); one of ``vehicle``, whose name is the
+scheme of an address, as `mintpilot.assembly.real_vehicle.make_vehicle` does."""
 
 
 FORMER: Final = MappingProxyType({"strategy": MappingProxyType({"pure-llm": "passive-mixture"})})

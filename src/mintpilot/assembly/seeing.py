@@ -3,38 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
+from mintpilot.assembly.mapping_frames import REACH_M, mapped
 from mintpilot.assembly.perceiving import Seeing, make_perception, remarks_of
 from mintpilot.assembly.seen_report import GapSeen, SeenReport, gap_seen, report_of
 from mintpilot.core.errors import InputError, MapError, RecordError
-from mintpilot.core.geometry import Floats, GridFrame, Vec3
+from mintpilot.core.gap import NONE_OF_THEM, NOT_YET_SEEN
+from mintpilot.core.geometry import Vec3
 from mintpilot.core.observation import Frame
-from mintpilot.core.plan import VehicleLimits
-from mintpilot.core.ports import FrameSource, Perception
-from mintpilot.core.semantic_map import MapObject, SemanticMap
-from mintpilot.core.task import Reference
+from mintpilot.core.ports import FrameSource
+from mintpilot.core.semantic_map import SemanticMap
 from mintpilot.frames.aligned import AlignedFrames
 from mintpilot.language.instruction import parse_instruction
-from mintpilot.mapping.builder import MapBuilder
-from mintpilot.mapping.settings import MappingSettings
 from mintpilot.mission_file.seen_map import save_map
 from mintpilot.uncertainty.doubts import doubtful_people, referents, said_of
 from mintpilot.uncertainty.findings import find_gaps
-from mintpilot.uncertainty.things import stands_for
-
-REACH_M = 8.0
-"""Depth beyond this places no surface."""
-ROUND_M = 0.5
-"""The lattice reaches so far around what was seen and where it was seen from."""
-CELLS = 4_000_000
-"""The lattice is made coarser until it has no more cells."""
-FINEST_M = 0.05
-START_M = 0.45
-"""So much space around the camera is known free: the camera was there."""
+from mintpilot.uncertainty.matching import asked_name
+from mintpilot.uncertainty.things import things_of
 
 
 def see(
@@ -43,6 +31,7 @@ def see(
     name: str,
     perception: str = "segments",
     namers: Sequence[str] = (),
+    calibration: Path | None = None,
     instruction: str | None = None,
     out: Path | None = None,
 ) -> SeenReport:
@@ -53,6 +42,7 @@ def see(
         name: what the report calls it.
         perception: registered name of what makes objects of pictures.
         namers: registered names of who names what is found; empty: the perception's own way.
+        calibration: file of measured confidences of the namers; None: ours.
         instruction: gaps are then those that bear on it, too.
         out: folder that becomes a world for missions (``world: {seen: DIR}``); None: nothing is written.
 
@@ -67,9 +57,15 @@ def see(
     setting = aligned.setting
     wanted = wanted_nouns(instruction)
     seeing = make_perception(
-        Seeing(perception=perception, namers=tuple(namers), wanted=wanted, floor_m=setting.floor_m)
+        Seeing(
+            perception=perception,
+            namers=tuple(namers),
+            wanted=wanted,
+            floor_m=setting.floor_m,
+            calibration=calibration,
+        )
     )
-    map_ = _mapped(frames, seeing, setting.floor_m)
+    map_ = mapped(frames, seeing, setting.floor_m)
     x, y, z = (float(v) for v in frames[0].world_from_camera[:3, 3])
     warnings = [*aligned.warnings, *remarks_of(seeing), *_seen_nothing(map_, frames)]
     gaps, problems = gaps_of(map_, instruction, start_m=(x, y, z))
@@ -120,11 +116,11 @@ def gaps_of(map_: SemanticMap, instruction: str | None, *, start_m: Vec3) -> tup
             continue
         wanted = {a.value for a in meant.attributes if a.name in ("", "colour", "size")}
         fitting = [o for o in map_.objects if not _contradicts(o.values("colour") | o.values("size"), wanted)]
-        found = referents(_called(meant, map_.objects), fitting)
+        found = referents(asked_name(meant, things_of(map_)), fitting)
         named = {o.id: said_of(o) for o in map_.objects}
         values = {i: round(p, 4) for i, p in found.things} | {
-            "none of them": round(found.none_of_them, 4),
-            "not yet seen": round(found.not_yet_seen, 4),
+            NONE_OF_THEM: round(found.none_of_them, 4),
+            NOT_YET_SEEN: round(found.not_yet_seen, 4),
         }
         gaps.append(
             GapSeen(
@@ -139,13 +135,6 @@ def gaps_of(map_: SemanticMap, instruction: str | None, *, start_m: Vec3) -> tup
     return gaps, list(findings.problems)
 
 
-def _called(meant: Reference, objects: Sequence[MapObject]) -> str:
-    """The name that a phrase asks for: ``medicine box`` where something may be so called, else its noun alone."""
-    whole = " ".join((*(a.value for a in meant.attributes if not a.name), meant.label))
-    named = {g.label for o in objects for g in o.names} | {o.label for o in objects}
-    return whole if any(stands_for(name, whole) for name in named) else meant.label
-
-
 _COLOURS = frozenset({"red", "orange", "yellow", "green", "blue", "purple", "white", "grey", "black", "brown"})
 _SIZES = frozenset({"small", "medium", "large"})
 
@@ -153,58 +142,6 @@ _SIZES = frozenset({"small", "medium", "large"})
 def _contradicts(known: frozenset[str], wanted: set[str]) -> bool:
     """Whether a thing is known to have another colour or size than is wanted."""
     return any(wanted & group and known & group and not (wanted & known & group) for group in (_COLOURS, _SIZES))
-
-
-def _mapped(frames: list[Frame], perception: Perception, floor_m: float) -> SemanticMap:
-    lattice = lattice_of(frames)
-    settings = MappingSettings()
-    few = len(frames) < 4
-    builder = MapBuilder(
-        lattice,
-        limits=VehicleLimits(),
-        volume=lattice.box,
-        settings=replace(
-            settings,
-            max_range_m=REACH_M,
-            sure_score=0.5 if few else settings.sure_score,
-            viewpoint_height_m=settings.viewpoint_height_m + floor_m,
-        ),
-    )
-    for index, frame in enumerate(frames):
-        builder.integrate(frame, perception.detect(frame, index))
-    builder.mark_flown(np.array([f.world_from_camera[:3, 3] for f in frames]), START_M)
-    return builder.snapshot()
-
-
-def lattice_of(frames: list[Frame]) -> GridFrame:
-    """A lattice around all that is seen within reach, and around where it was seen from."""
-    corners = [np.stack([f.world_from_camera[:3, 3] for f in frames])]
-    for frame in frames:
-        points = _sampled(frame)
-        if len(points):
-            corners.append(np.percentile(points, (0.5, 99.5), axis=0))
-    places = np.concatenate(corners)
-    lo, hi = places.min(axis=0) - ROUND_M, places.max(axis=0) + ROUND_M
-    resolution = FINEST_M
-    while np.prod(np.ceil((hi - lo) / resolution)) > CELLS:
-        resolution *= 1.25
-    shape = np.ceil((hi - lo) / resolution).astype(int)
-    return GridFrame(
-        origin_m=(float(lo[0]), float(lo[1]), float(lo[2])),
-        resolution_m=float(resolution),
-        shape=(int(shape[2]), int(shape[1]), int(shape[0])),
-    )
-
-
-def _sampled(frame: Frame) -> Floats:
-    step, lens = max(1, frame.camera.width // 80), frame.camera
-    v, u = np.mgrid[0 : lens.height : step, 0 : lens.width : step]
-    z = np.nan_to_num(frame.depth_m[v, u]).astype(float)
-    kept = (z > 0) & (z < REACH_M)
-    u, v, z = u[kept] + 0.5, v[kept] + 0.5, z[kept]
-    points = np.stack([(u - lens.cx) / lens.fx * z, (v - lens.cy) / lens.fy * z, z], axis=1)
-    moved: Floats = points @ frame.world_from_camera[:3, :3].T + frame.world_from_camera[:3, 3]
-    return moved
 
 
 def _seen_nothing(map_: SemanticMap, frames: list[Frame]) -> list[str]:

@@ -10,6 +10,7 @@ from typing import Any, Final, TypeAlias, get_type_hints
 from mintpilot.assembly.registry import load
 from mintpilot.core.errors import InputError
 from mintpilot.core.ports import QueryObjective, Strategy
+from mintpilot.strategies.waiting import CountsWaiting
 from mintpilot.strategies.within_limits import WithinLimits
 
 Argument: TypeAlias = bool | int | float | str
@@ -21,7 +22,8 @@ _SIMPLE: Final = {bool: "true or false", int: "a whole number", float: "a number
 def make_strategy(name: str, *, seed: int, arguments: Mapping[str, Argument] | None = None) -> Strategy:
     """A fresh strategy. Used by missions, plans, the benchmark and the Gymnasium environment alike.
 
-    Whatever bound on the work it meets, it decides on the cautious plan then (`WithinLimits`).
+    Whatever bound on the work it meets, it decides on the cautious plan then (`WithinLimits`); it does not ask where
+    waiting may lose more than an answer gives (`CountsWaiting`).
 
     Args:
         name: as it is registered.
@@ -33,7 +35,7 @@ def make_strategy(name: str, *, seed: int, arguments: Mapping[str, Argument] | N
         InputError: it takes no such argument, or not that value.
     """
     made: Strategy = _made("strategy", name, seed, arguments or {})
-    return WithinLimits(made)
+    return WithinLimits(CountsWaiting(made))
 
 
 def make_objective(name: str, *, seed: int) -> QueryObjective:

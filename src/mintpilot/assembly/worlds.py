@@ -78,6 +78,9 @@ class Parse(Protocol):
         ...
 
 
+MOST_SEED = 2**32 - 1
+
+
 def build_world(file: MissionFile, *, base: Path, seed: int | None, parse: Parse | None = None) -> World:
     """The world of a mission file.
 
@@ -93,6 +96,8 @@ def build_world(file: MissionFile, *, base: Path, seed: int | None, parse: Parse
     parse = parse or _by_rules
     world = file.world
     drawn = seed if seed is not None else (world.seed or 0)
+    if not 0 <= drawn <= MOST_SEED:
+        raise InputError(f"seed {drawn} must be a whole number from 0 to {MOST_SEED}; give one of them")
     if isinstance(world, ScenarioWorld):
         return _from_scenario(file, world, drawn, parse)
     if isinstance(world, SceneWorld):

@@ -13,7 +13,7 @@ from mintpilot.assembly.worlds import World, build_world
 from mintpilot.benchmark.experiment import Cell, Condition, Experiment
 from mintpilot.benchmark.methods import Method
 from mintpilot.core.geometry import Box, Floats, GridFrame, Ints
-from mintpilot.core.mission import AskingSettings, CriticalityRule
+from mintpilot.core.mission import AskingSettings, CriticalityRule, WhileWaiting
 from mintpilot.core.semantic_map import Cell as Voxel
 from mintpilot.core.semantic_map import MapObject, SemanticMap
 from mintpilot.mission_file.schema import MissionFile
@@ -53,9 +53,12 @@ def believed_world(world: World, condition: Condition) -> World:
 def asking_for(
     settings: AskingSettings, experiment: Experiment, condition: Condition, method: Method
 ) -> AskingSettings:
-    """The settings that one method decides with: what the drone believes of the answers, and the prices if told."""
+    """The settings that one method decides with: what the drone believes of answers, and the prices if told.
+
+    How long the person takes on average is told, too.
+    """
     error = condition.answer_error if condition.believed_error is None else condition.believed_error
-    told = replace(settings, answer_error=error)
+    told = replace(settings, answer_error=error, reply_s=experiment.think.mean_s)
     if experiment.tell_prices:
         prices = experiment.prices
         told = replace(told, question_price_s=prices.question_s, failure_price_s=prices.failure_s)
@@ -94,7 +97,8 @@ def _moved_object(thing: MapObject, off_m: Floats) -> MapObject:
 
 
 def _typed(values: dict[str, str | float]) -> dict[str, Any]:
-    return {k: CriticalityRule(str(v)) if k == "rule" else v for k, v in values.items()}
+    kinds = {"rule": CriticalityRule, "while_waiting": WhileWaiting}
+    return {k: kinds[k](str(v)) if k in kinds else v for k, v in values.items()}
 
 
 @lru_cache

@@ -8,6 +8,7 @@ from typing import Literal
 from pydantic import BaseModel, ConfigDict, Field
 
 from mintpilot.benchmark.methods import Method
+from mintpilot.core.think_time import ThinkTime
 
 CONFIG_VERSION = 1
 """Of the configuration file; raised with every change that old readers would misread."""
@@ -74,7 +75,9 @@ class Experiment(Part):
     tell_prices: bool = False
     """Whether the methods know the prices; else they run with their own defaults, as in a mission."""
     think_s: float = Field(default=0.0, ge=0)
-    """How long the scripted person thinks about a question, seconds of mission time."""
+    """How long the scripted person thinks about a question, at least, seconds of mission time."""
+    think_most_s: float | None = Field(default=None, ge=0)
+    """The time is drawn evenly up to this one; None: it is always the same."""
     llm: str = "template"
     """Language model that may propose questions; ``template``: none."""
     time_limit_s: float = Field(default=120.0, gt=0)
@@ -85,6 +88,11 @@ class Experiment(Part):
     """Whether the first method's survey flight serves all methods in the same world (`SharedSurvey`)."""
     versions: dict[str, str] = {}
     """Of everything that decides results."""
+
+    @property
+    def think(self) -> ThinkTime:
+        """How long the scripted person thinks about a question."""
+        return ThinkTime(self.think_s, self.think_s if self.think_most_s is None else self.think_most_s)
 
     def key_data(self) -> str:
         """What must agree for records to stand in one folder: all but the number of trials and the time limit."""

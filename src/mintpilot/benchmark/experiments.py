@@ -2,7 +2,8 @@
 
 Worlds are those of the scenario generators with their defaults (`mintpilot.simulation.scenarios`), which follow the
 paper's description. Prices: a question counts as 10 s of flight, a failure as 600 s (the default of `AskingSettings`).
-The scripted person thinks for 3 s about each question; that is stated, not waited for.
+The scripted person thinks for 5 s about each question, and the drone's battery runs meanwhile. Table 1's batteries then
+last 10 s longer for each gap (the default of ``asking.reply_s``), so that thinking is possible.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ from mintpilot.benchmark.calibration import calibrated
 from mintpilot.benchmark.experiment import Cell, Condition, Experiment
 from mintpilot.benchmark.methods import Method, method_of
 from mintpilot.core.errors import InputError
+from mintpilot.core.think_time import think_time
 
 TABLE1 = (
     "passive-conservative",
@@ -45,6 +47,10 @@ GAPS = (
 )
 """`information-gain` is `mint` with its defaults."""
 MOST_GAPS = 8
+THINK_S = 5.0
+"""How long the scripted person thinks about a question, seconds."""
+SPARE_S = 10.0
+"""How much longer the battery lasts for each gap where the person thinks, seconds: as ``asking.reply_s`` by default."""
 CONDITIONS: tuple[tuple[str, Condition], ...] = (
     ("5 % wrong answers", Condition(answer_error=0.05)),
     ("10 % wrong answers", Condition(answer_error=0.10)),
@@ -64,11 +70,25 @@ def table1(
     trials: int,
     seed: int,
     vehicle: Vehicle,
+    think: str | float = THINK_S,
+    spare_s: float | None = None,
     strategies: Sequence[str] = (),
     llm: str = TEMPLATE,
     time_limit_s: float | None = None,
 ) -> Experiment:
     """The paper's Table 1: one cloud of smoke and one closed room in a warehouse on fire.
+
+    With ``think=0`` these are the worlds and batteries of the table before people took time.
+
+    Args:
+        trials: number of worlds.
+        seed: of the first.
+        vehicle: point mass, or physics and camera.
+        think: seconds that the scripted person takes, or two bounds (`mintpilot.core.think_time.think_time`).
+        spare_s: how much longer the battery lasts for each gap; None: `SPARE_S` where the person thinks, else 0.
+        strategies: compared besides.
+        llm: who may propose questions.
+        time_limit_s: of computing, for each trial.
 
     Raises:
         UnknownNameError: one of the strategies, or the language model, is not known.
@@ -76,8 +96,11 @@ def table1(
     """
     # The yardstick is about the number of questions: in physics it would only repeat what the fast worlds tell.
     compared = TABLE1 if vehicle == "kinematic" else tuple(name for name in TABLE1 if name != "optimal")
-    cell = Cell(scenario="fire-warehouse", methods=_methods((*compared, *strategies)))
-    return _experiment("table1", (cell,), trials, seed, vehicle, share_survey=True, llm=llm, time_limit_s=time_limit_s)
+    methods = _methods((*compared, *strategies))
+    cell = Cell(scenario="fire-warehouse", parameters=_spare(think, spare_s, 2), methods=methods)
+    return _experiment(
+        "table1", (cell,), trials, seed, vehicle, think=think, share_survey=True, llm=llm, time_limit_s=time_limit_s
+    )
 
 
 def boxes(
@@ -85,7 +108,7 @@ def boxes(
     trials: int,
     seed: int,
     vehicle: Vehicle,
-    think_s: float = 3.0,
+    think: str | float = THINK_S,
     strategies: Sequence[str] = (),
     llm: str = TEMPLATE,
     time_limit_s: float | None = None,
@@ -97,7 +120,7 @@ def boxes(
         InputError: a number is out of range, or a strategy is named twice.
     """
     cell = Cell(scenario="medicine-boxes", methods=_methods((*BOXES, *strategies)))
-    return _experiment("boxes", (cell,), trials, seed, vehicle, think_s=think_s, llm=llm, time_limit_s=time_limit_s)
+    return _experiment("boxes", (cell,), trials, seed, vehicle, think=think, llm=llm, time_limit_s=time_limit_s)
 
 
 def gaps(
@@ -105,6 +128,8 @@ def gaps(
     trials: int,
     seed: int,
     vehicle: Vehicle,
+    think: str | float = THINK_S,
+    spare_s: float | None = None,
     strategies: Sequence[str] = (),
     llm: str = TEMPLATE,
     time_limit_s: float | None = None,
@@ -116,10 +141,11 @@ def gaps(
         InputError: a number is out of range, or a strategy is named twice.
     """
     methods = _methods((*GAPS, *strategies))
-    cells = [_gap_cell(f"k = {k}", k, Condition(), methods) for k in range(1, MOST_GAPS + 1)]
-    cells += [_gap_cell(name, 4, condition, methods) for name, condition in CONDITIONS]
+    kinds = [(f"k = {k}", k, Condition()) for k in range(1, MOST_GAPS + 1)]
+    kinds += [(name, 4, condition) for name, condition in CONDITIONS]
+    cells = [_gap_cell(name, k, _spare(think, spare_s, k), condition, methods) for name, k, condition in kinds]
     return _experiment(
-        "gaps", tuple(cells), trials, seed, vehicle, tell_prices=True, llm=llm, time_limit_s=time_limit_s
+        "gaps", tuple(cells), trials, seed, vehicle, think=think, tell_prices=True, llm=llm, time_limit_s=time_limit_s
     )
 
 
@@ -129,18 +155,30 @@ def gap_parameters(k: int) -> dict[str, float]:
     return {"smokes": float(k - rooms), "rooms": float(rooms)}
 
 
+def _spare(think: str | float, spare_s: float | None, gaps: int) -> dict[str, float]:
+    """The scenario's parameter for batteries that last longer; none where they are as they were."""
+    each_s = (SPARE_S if think_time(think).most_s > 0 else 0.0) if spare_s is None else spare_s
+    return {"thinking_s": gaps * each_s} if each_s else {}
+
+
 def versions() -> dict[str, str]:
     """Of everything that decides results."""
     packages = ("mintpilot", "numpy", "scipy", "numba")
     return {"python": platform.python_version(), **{name: metadata.version(name) for name in packages}}
 
 
-def _gap_cell(name: str, k: int, condition: Condition, methods: tuple[Method, ...]) -> Cell:
+def _gap_cell(name: str, k: int, spare: dict[str, float], condition: Condition, methods: tuple[Method, ...]) -> Cell:
     believed = condition.answer_error if condition.believed_error is None else condition.believed_error
     # The exact programme is defined for answers that the drone takes to be right.
     fitting = tuple(m for m in methods if m.name != "optimal" or believed == 0)
     ready = tuple(calibrated(m, k) for m in fitting)
-    return Cell(name=name, scenario="fire-warehouse", parameters=gap_parameters(k), condition=condition, methods=ready)
+    return Cell(
+        name=name,
+        scenario="fire-warehouse",
+        parameters={**gap_parameters(k), **spare},
+        condition=condition,
+        methods=ready,
+    )
 
 
 def _methods(names: Sequence[str]) -> tuple[Method, ...]:
@@ -157,7 +195,7 @@ def _experiment(
     seed: int,
     vehicle: Vehicle,
     *,
-    think_s: float = 0.0,
+    think: str | float = 0.0,
     tell_prices: bool = False,
     share_survey: bool = False,
     llm: str = TEMPLATE,
@@ -167,8 +205,9 @@ def _experiment(
         raise InputError(f"--trials {trials}: must be 1 or more")
     if seed < 0:
         raise InputError(f"--seed {seed}: must be 0 or more")
-    if not 0 <= think_s <= 30:
-        raise InputError(f"--think {think_s:g}: must be from 0 to 30 s; the drone waits no longer than that")
+    thinks = think_time(think)
+    if thinks.most_s > 30:
+        raise InputError(f"--think {thinks}: must be from 0 to 30 s; the drone waits no longer than that")
     if time_limit_s is not None and not time_limit_s > 0:
         raise InputError(f"--time-limit {time_limit_s:g}: must be above 0 s")
     load("language", llm)
@@ -179,7 +218,8 @@ def _experiment(
         trials=trials,
         seed=seed,
         vehicle=vehicle,
-        think_s=think_s,
+        think_s=thinks.least_s,
+        think_most_s=None if thinks.most_s == thinks.least_s else thinks.most_s,
         tell_prices=tell_prices,
         time_limit_s=usual_s if time_limit_s is None else time_limit_s,
         share_plans=vehicle == "kinematic",

@@ -70,6 +70,11 @@ class TrialRecord(Part):
     flight_s: float = 0.0
     """Mission clock from the end of the survey to the end, stays included."""
     flown_m: float = 0.0
+    waited_s: float = 0.0
+    """From questions shown to their answers, or to the end of waiting."""
+    hidden_s: float = 0.0
+    """Of that, what was flown meanwhile of what had to be flown anyway, by the plans."""
+    stops_done: int = 0
     planned_s: float | None = None
     """Cost of the plan that was chosen last; None where none was."""
     stop_reason: str = ""

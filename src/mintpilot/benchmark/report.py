@@ -148,7 +148,7 @@ def _facts(experiment: Experiment, summary: Summary) -> tuple[str, ...]:
         f"In {summary.possible} of {summary.worlds} worlds a planner that is told the truth finds a plan; elsewhere "
         "nobody can succeed.",
         f"Cost: seconds of flight, {prices.question_s:g} s for each question, {prices.failure_s:g} s for a failure.",
-        f"The scripted person thinks for {experiment.think_s:g} s about a question; the drone waits.",
+        f"The scripted person thinks for {experiment.think} s about a question; the clock and the battery run.",
         "Brackets: 95 % intervals, Wilson's for shares and Student's t for means.",
     ]
     if summary.least_possible_queries is not None:

@@ -17,7 +17,7 @@ from mintpilot.benchmark.methods import Method
 from mintpilot.benchmark.records import TrialRecord
 from mintpilot.benchmark.shared_survey import SharedSurvey
 from mintpilot.benchmark.tally import Tally
-from mintpilot.core.mission import Outcome, Verdict
+from mintpilot.core.mission import Outcome, Verdict, Waiting
 from mintpilot.core.ports import Planner
 from mintpilot.mission.components import MissionComponents
 from mintpilot.mission.loop import fly_mission
@@ -52,10 +52,12 @@ def fly_trial(
     begun = time.perf_counter()
     tally, flight = Tally(), _Flight()
     error = ""
+    waiting, done = Waiting(), 0
     try:
         with deadline(experiment.time_limit_s):
             verdict = flight.fly(experiment, cell, method, world, planner, survey, tally)
             outcome, reason = verdict.outcome.value, verdict.reason
+            waiting, done = verdict.waiting, len(verdict.achieved)
     except TrialTimeoutError:
         outcome = TIMED_OUT
         reason = f"'{method.name}' was not done within {experiment.time_limit_s:g} s of computing"
@@ -78,6 +80,9 @@ def fly_trial(
         contradictions=tally.contradictions,
         flight_s=flight.seconds(),
         flown_m=tally.flown_m,
+        waited_s=waiting.delay_s,
+        hidden_s=waiting.hidden_s,
+        stops_done=done,
         planned_s=tally.planned_s,
         stop_reason=tally.stop_reason,
         stages_s=tally.stages,
@@ -131,7 +136,7 @@ class _Flight:
         asking = asking_for(world.mission.asking, experiment, condition, method)
         world = replace(world, mission=replace(world.mission, asking=asking))
         person = OperatorSpec(
-            answer_error=condition.answer_error, unsure=condition.unsure_rate, latency_s=experiment.think_s
+            answer_error=condition.answer_error, unsure=condition.unsure_rate, latency_s=str(experiment.think)
         )
         choices = Choices(strategy="mint", vehicle=VehicleChoice(experiment.vehicle))
         operator = scripted_operator(world, person)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 from cyclopts import App, Parameter
 
 from mintpilot.cli.bench_flags import BenchFlags, Flag, Json, VehicleName
+from mintpilot.cli.bench_perception import perception
 from mintpilot.cli.bench_trust import trust
 from mintpilot.cli.exits import EPILOGUE, ExitCode, guarded
 
@@ -24,17 +25,27 @@ bench = App(
     result_action="return_value",
 )
 
+bench.command(perception)
 bench.command(trust)
 _USUAL = BenchFlags()
 
 
 @bench.command
-def table1(*, trials: int = 100, vehicle: VehicleName = "kinematic", flags: BenchFlags = _USUAL) -> ExitCode:
+def table1(
+    *,
+    trials: int = 100,
+    vehicle: VehicleName = "kinematic",
+    think: str = "5",
+    spare: float | None = None,
+    flags: BenchFlags = _USUAL,
+) -> ExitCode:
     """Table 1 of the paper: success and questions in a warehouse on fire, every method in the same worlds.
 
     Args:
         trials: Number of worlds.
         vehicle: A fast point mass, or physics and camera.
+        think: Seconds that the scripted person takes for an answer, or two bounds: 2..8. The battery runs meanwhile.
+        spare: Seconds that the battery lasts longer for each gap. Default: 10, or 0 with --think 0.
         flags: What all experiments share.
     """
 
@@ -45,6 +56,8 @@ def table1(*, trials: int = 100, vehicle: VehicleName = "kinematic", flags: Benc
             trials=trials,
             seed=flags.seed,
             vehicle=vehicle,
+            think=think,
+            spare_s=spare,
             strategies=flags.strategy,
             llm=flags.llm,
             time_limit_s=flags.time_limit,
@@ -55,14 +68,14 @@ def table1(*, trials: int = 100, vehicle: VehicleName = "kinematic", flags: Benc
 
 @bench.command
 def boxes(
-    *, trials: int = 20, vehicle: VehicleName = "mujoco", think: float = 3.0, flags: BenchFlags = _USUAL
+    *, trials: int = 20, vehicle: VehicleName = "mujoco", think: str = "5", flags: BenchFlags = _USUAL
 ) -> ExitCode:
     """The paper's real-world task: which box holds the medicine? Through the whole chain, from pictures to flight.
 
     Args:
         trials: Number of arrangements of boxes.
         vehicle: Physics and camera, or a fast point mass.
-        think: Seconds that the scripted person takes for an answer; the drone waits for them in mission time.
+        think: Seconds that the scripted person takes for an answer, or two bounds: 2..8. The drone waits for them.
         flags: What all experiments share.
     """
 
@@ -73,7 +86,7 @@ def boxes(
             trials=trials,
             seed=flags.seed,
             vehicle=vehicle,
-            think_s=think,
+            think=think,
             strategies=flags.strategy,
             llm=flags.llm,
             time_limit_s=flags.time_limit,
@@ -83,12 +96,21 @@ def boxes(
 
 
 @bench.command
-def gaps(*, trials: int = 20, vehicle: VehicleName = "kinematic", flags: BenchFlags = _USUAL) -> ExitCode:
+def gaps(
+    *,
+    trials: int = 20,
+    vehicle: VehicleName = "kinematic",
+    think: str = "5",
+    spare: float | None = None,
+    flags: BenchFlags = _USUAL,
+) -> ExitCode:
     """Beyond the paper: one to eight gaps, wrong and unsure answers, wrong priors, misplaced detections.
 
     Args:
         trials: Number of worlds for each of the 16 settings.
         vehicle: A fast point mass, or physics and camera.
+        think: Seconds that the scripted person takes for an answer, or two bounds: 2..8. The battery runs meanwhile.
+        spare: Seconds that the battery lasts longer for each gap. Default: 10, or 0 with --think 0.
         flags: What all experiments share.
     """
 
@@ -99,6 +121,8 @@ def gaps(*, trials: int = 20, vehicle: VehicleName = "kinematic", flags: BenchFl
             trials=trials,
             seed=flags.seed,
             vehicle=vehicle,
+            think=think,
+            spare_s=spare,
             strategies=flags.strategy,
             llm=flags.llm,
             time_limit_s=flags.time_limit,

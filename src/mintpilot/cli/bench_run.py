@@ -20,6 +20,7 @@ from mintpilot.benchmark.summary import Row, Summary, summarise
 from mintpilot.benchmark.tables import print_summary
 from mintpilot.cli.bench_flags import BenchFlags
 from mintpilot.cli.exits import ExitCode
+from mintpilot.cli.output import put
 from mintpilot.core.errors import MissingPartError, RecordError
 from mintpilot.mission_file.schema import LanguageSpec
 
@@ -100,15 +101,7 @@ def write_tables(folders: Sequence[Path], to: Format, out: Path | None) -> ExitC
     if not any(summary.rows for _, summary in summaries):
         raise RecordError("there are no trials in these folders; run a benchmark first")
     text = as_csv(summaries) if to == "csv" else as_latex(summaries)
-    if out is None:
-        print(text, end="")
-        return ExitCode.SUCCESS
-    try:
-        out.parent.mkdir(parents=True, exist_ok=True)
-        out.write_text(text, encoding="utf-8")
-    except OSError as error:
-        raise RecordError(f"cannot write {out}: {error.strerror}; choose another file with --out") from error
-    print(out)
+    put(text, out)
     return ExitCode.SUCCESS
 
 

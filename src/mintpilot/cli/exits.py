@@ -76,7 +76,7 @@ def hush() -> None:
 def verdict_on(error: BaseException) -> tuple[ExitCode, str]:
     """The exit code and the words for whatever went wrong."""
     if isinstance(error, KeyboardInterrupt):
-        return ExitCode.INTERRUPTED, "stopped by Ctrl-C"
+        return ExitCode.INTERRUPTED, f"stopped by {error.args[0] if error.args else 'Ctrl-C'}"
     if isinstance(error, MissingPartError):
         return ExitCode.MISSING_PART, str(error)
     if isinstance(error, DeviceError | RecordError):
@@ -96,9 +96,14 @@ def verdict_on(error: BaseException) -> tuple[ExitCode, str]:
     )
 
 
+def shown(text: str) -> str:
+    """Text of others for a terminal: control characters are spelt out, lines stay lines."""
+    return "".join(c if c.isprintable() or c == "\n" else c.encode("unicode_escape").decode() for c in text)
+
+
 def fail(message: str, *, as_json: bool, code: ExitCode = ExitCode.WRONG_INPUT, kind: str = "InputError") -> ExitCode:
     """Says what went wrong on standard error, and with ``as_json`` on standard output as one object."""
-    print(f"mintpilot: {message}", file=sys.stderr)
+    print(f"mintpilot: {shown(message)}", file=sys.stderr)
     if as_json:
         failure = {"kind": kind, "message": message, "exit_code": int(code)}
         report = {"schema_version": ERROR_SCHEMA_VERSION, "outcome": "error", "error": failure}

@@ -9,30 +9,41 @@ from cyclopts import Parameter
 
 from mintpilot.cli.bench_flags import Flag
 from mintpilot.cli.exits import ExitCode, guarded
-from mintpilot.core.errors import RecordError
+from mintpilot.cli.output import put
 
 
 def export(
     source: Path,
     /,
     *,
-    to: Annotated[Literal["plan", "wpl", "geojson"], Parameter(name="--to")] = "plan",
+    to: Annotated[Literal["plan", "wpl", "geojson", "usd"], Parameter(name="--to")] = "plan",
     firmware: Literal["px4", "ardupilot"] = "px4",
+    seed: int = 0,
     out: Path | None = None,
     debug: Flag = False,
 ) -> ExitCode:
-    """Write the flight plan of a mission or a recorded run for a ground station.
+    """Write the flight plan of a mission or a recorded run for a ground station, or a world for Isaac Sim.
 
     The mission's map needs a georeference. A plan that rests on a question is exported from the run that answered it.
     Autopilots cut corners: keep the acceptance radius small, and check the way on the ground station's map.
 
     Args:
-        source: A mission file, or the folder of a run.
-        to: A .plan of QGroundControl, a way-point list (QGC WPL 110), or GeoJSON.
+        source: A mission file, or the folder of a run. For usd: a scenario (fire-warehouse, medicine-boxes), or
+            a mission file whose world is a scenario or a scene.
+        to: A .plan of QGroundControl, a way-point list (QGC WPL 110), GeoJSON, or the world as OpenUSD.
         firmware: For which autopilot a .plan is written.
-        out: The file. Default: standard output.
+        seed: Of a scenario, for usd.
+        out: The file. Default: standard output; for usd the source's name with .usda (.usdc: binary).
         debug: Show the traceback of an error.
     """
+
+    def world() -> ExitCode:
+        from mintpilot.assembly.simulating import write_usd_of
+
+        path = out or Path(f"{source.stem}.usda")
+        write_usd_of(str(source), seed, path)
+        print(path)
+        return ExitCode.SUCCESS
 
     def work() -> ExitCode:
         from mintpilot.assembly.exporting import flight_plan_from
@@ -46,16 +57,9 @@ def export(
                 text = plan_text(plan, firmware)
             case "wpl":
                 text = waypoints_text(plan)
-            case "geojson":
+            case _:
                 text = geojson_text(plan)
-        if out is None:
-            print(text, end="")
-            return ExitCode.SUCCESS
-        try:
-            out.write_text(text, encoding="utf-8")
-        except OSError as error:
-            raise RecordError(f"cannot write {out}: {error.strerror}; choose another file with --out") from error
-        print(out)
+        put(text, out)
         return ExitCode.SUCCESS
 
-    return guarded(work, as_json=False, debug=debug)
+    return guarded(world if to == "usd" else work, as_json=False, debug=debug)

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from mintpilot.cli.progress import Narrator
     from mintpilot.core.events import Event
     from mintpilot.core.ports import Operator
+    from mintpilot.recording.question_notes import QuestionNotes
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -36,6 +37,8 @@ class FlightOptions:
     out: Path | None
     """The run folder; None: a new one under ``runs``."""
     as_json: bool
+    think: str | None = None
+    """How long the scripted operator thinks, seconds; None: as the mission file says."""
     strategy_args: tuple[str, ...] = ()
     """Each ``NAME=VALUE``."""
     llm: str | None = None
@@ -56,6 +59,7 @@ def fly(path: Path, options: FlightOptions) -> ExitCode:
     from mintpilot.assembly.strategies import parse_arguments
     from mintpilot.cli.progress import LenientConsole, Narrator
     from mintpilot.mission_file.reader import read_mission
+    from mintpilot.recording.question_notes import QuestionNotes
     from mintpilot.recording.run_folder import new_run_path
     from mintpilot.recording.run_summary import summary
     from mintpilot.recording.terminal_report import print_report
@@ -65,11 +69,13 @@ def fly(path: Path, options: FlightOptions) -> ExitCode:
     mission = read_mission(path)
     errors = LenientConsole(stderr=True)
     out = options.out or new_run_path(Path("runs"), mission.name, datetime.now(UTC))
+    notes = QuestionNotes(out)
     with ExitStack() as stack, Narrator(errors) as narrator:
         served = ServedPage(options.page, errors, stack) if options.page is not None else None
 
         def tell(event: Event) -> None:
             narrator(event)
+            notes(event)
             if served is not None:
                 served.record(event)
             stop_if_wanted(event)
@@ -78,11 +84,18 @@ def fly(path: Path, options: FlightOptions) -> ExitCode:
             record = run_mission(
                 path,
                 operator=_operators(
-                    options.operator, errors, narrator, served, stack, real=options.vehicle.startswith("mavlink:")
+                    options.operator,
+                    errors,
+                    narrator,
+                    served,
+                    stack,
+                    notes=notes,
+                    real="://" in options.vehicle,
                 ),
                 vehicle=options.vehicle,
                 strategy=options.strategy,
                 strategy_arguments=arguments,
+                think=options.think,
                 seed=options.seed,
                 out=out,
                 progress=tell,
@@ -119,17 +132,24 @@ def _operators(
     served: ServedPage | None,
     closing: ExitStack,
     *,
+    notes: QuestionNotes,
     real: bool,
 ) -> tuple[AnyOperator, ...]:
     """Whoever answers: the page first, and the terminal beside it where somebody is there."""
     pages = () if served is None else (served.operator,)
     if pages and (choice == "console" or not _somebody(console)):
         return pages
-    return (*pages, *_present(choice, console, narrator, closing, real=real))
+    return (*pages, *_present(choice, console, narrator, closing, notes=notes, real=real))
 
 
 def _present(
-    choice: str | None, console: Console, narrator: Narrator, closing: ExitStack, *, real: bool
+    choice: str | None,
+    console: Console,
+    narrator: Narrator,
+    closing: ExitStack,
+    *,
+    notes: QuestionNotes,
+    real: bool,
 ) -> tuple[AnyOperator, ...]:
     """The person here, or the scripted operator. By voice, keys answer as well."""
     if choice is None and not _somebody(console) and real:
@@ -146,7 +166,7 @@ def _present(
 
     def made(talk: Talk) -> Operator:
         person = TerminalOperator(
-            console, sys.stdin, understand=talk.understand, order_of=talk.order_of, lang=talk.lang
+            console, sys.stdin, understand=talk.understand, order_of=talk.order_of, lang=talk.lang, notes=notes
         )
         return Attended(person, narrator)
 

@@ -1,4 +1,4 @@
-"""Ctrl-C and being told to end: both break off what runs, and neither gets lost."""
+"""Ctrl-C, being told to end, and a terminal that goes away: each breaks off what runs, and none gets lost."""
 
 from __future__ import annotations
 
@@ -9,16 +9,22 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from mintpilot.core.events import Event
 
-_wanted = False
+_NAMES = {signal.SIGINT: "Ctrl-C", signal.SIGTERM: "a request to end (SIGTERM)"}
+if hasattr(signal, "SIGHUP"):
+    _NAMES[signal.SIGHUP] = "the end of its terminal (SIGHUP)"
+_wanted = ""
 
 
 def listen() -> None:
-    """From now on SIGINT and SIGTERM raise `KeyboardInterrupt`. A SIGINT that the caller ignores stays ignored."""
+    """From now on SIGINT, SIGTERM and SIGHUP raise `KeyboardInterrupt`, with the signal's name in words.
+
+    SIGINT and SIGHUP stay ignored where the caller ignores them (background work, ``nohup``).
+    """
     global _wanted
-    _wanted = False
-    signal.signal(signal.SIGTERM, _interrupt)
-    if signal.getsignal(signal.SIGINT) is not signal.SIG_IGN:
-        signal.signal(signal.SIGINT, _interrupt)
+    _wanted = ""
+    for number in _NAMES:
+        if number is signal.SIGTERM or signal.getsignal(number) is not signal.SIG_IGN:
+            signal.signal(number, _interrupt)
 
 
 def stop_if_wanted(event: Event) -> None:
@@ -30,11 +36,11 @@ def stop_if_wanted(event: Event) -> None:
 
     global _wanted
     if _wanted and not isinstance(event, MissionEnded):
-        _wanted = False
-        raise KeyboardInterrupt
+        name, _wanted = _wanted, ""
+        raise KeyboardInterrupt(name)
 
 
-def _interrupt(_number: int, _frame: FrameType | None) -> None:
+def _interrupt(number: int, _frame: FrameType | None) -> None:
     global _wanted
-    _wanted = True
-    raise KeyboardInterrupt
+    _wanted = _NAMES[signal.Signals(number)]
+    raise KeyboardInterrupt(_wanted)

@@ -12,7 +12,8 @@ from cyclopts import App, Parameter
 
 from mintpilot.cli.bench_flags import Flag, Json
 from mintpilot.cli.exits import EPILOGUE, ExitCode, guarded
-from mintpilot.core.errors import InputError, RecordError
+from mintpilot.cli.output import put
+from mintpilot.core.errors import InputError
 
 log = App(
     name="log",
@@ -94,14 +95,7 @@ def export(
         from mintpilot.recording.flight_logs import track_csv, track_geojson
 
         text = track_csv(run) if to == "csv" else track_geojson(run)
-        if out is None:
-            print(text, end="")
-            return ExitCode.SUCCESS
-        try:
-            out.write_text(text, encoding="utf-8")
-        except OSError as error:
-            raise RecordError(f"cannot write {out}: {error.strerror}; choose another file with --out") from error
-        print(out)
+        put(text, out)
         return ExitCode.SUCCESS
 
     return guarded(work, as_json=False, debug=debug)

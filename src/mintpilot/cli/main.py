@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Sequence
+from io import TextIOWrapper
 from pathlib import Path
 from typing import Annotated, Literal, TypeAlias
 
@@ -11,7 +12,7 @@ from cyclopts import App, CycloptsError, Parameter, validators
 
 from mintpilot import __version__
 from mintpilot.cli.bench import bench
-from mintpilot.cli.exits import EPILOGUE, ExitCode, fail, guarded
+from mintpilot.cli.exits import EPILOGUE, ExitCode, fail, guarded, verdict_on
 from mintpilot.cli.exporting import export
 from mintpilot.cli.interrupts import listen
 from mintpilot.cli.logs import log, runs
@@ -58,6 +59,7 @@ def demo(
     *,
     headless: Flag = False,
     vehicle: VehicleName = "mujoco",
+    think: str | None = None,
     seed: Seed = None,
     llm: Llm = None,
     lang: Lang = None,
@@ -73,6 +75,7 @@ def demo(
         mission: The warehouse on fire, or the boxes of which one holds the medicine.
         headless: Ask nobody: a scripted operator that knows the truth answers.
         vehicle: Physics and camera, or a fast point mass.
+        think: Seconds that the scripted operator takes for an answer, or two bounds: 2..8. Default: 0.
         seed: Draws another world; the same seed gives the same mission. Default: 0.
         llm: Language model for words: template (none), endpoint, embedded, or a plug-in's. Default: as the file says.
         lang: Language of the questions: en, de, fr or es. Default: as the file says.
@@ -90,6 +93,7 @@ def demo(
         page=PageOptions(opens=True, patience_s=20.0) if not headless and not json and browser_can_open() else None,
         vehicle=vehicle,
         strategy="mint",
+        think=think,
         seed=seed,
         out=out,
         as_json=json,
@@ -114,6 +118,7 @@ def run(
     vehicle: str = "mujoco",
     strategy: str = "mint",
     strategy_arg: StrategyArgs = None,
+    think: str | None = None,
     seed: Seed = None,
     llm: Llm = None,
     lang: Lang = None,
@@ -137,6 +142,7 @@ def run(
             mavlink://udpin:127.0.0.1:14540.
         strategy: How it decides what to ask.
         strategy_arg: NAME=VALUE, an argument of the strategy; may be given several times. Overrides that of the file.
+        think: Seconds that the scripted operator takes for an answer, or two bounds: 2..8. Default: as the file says.
         seed: Of everything that is drawn at random; overrides the one in the file.
         llm: Language model for words: template (none), endpoint, embedded, or a plug-in's. Default: as the file says.
         lang: Language of the questions: en, de, fr or es. Default: as the file says.
@@ -165,6 +171,7 @@ def run(
         vehicle=vehicle,
         strategy=strategy,
         strategy_args=tuple(strategy_arg or ()),
+        think=think,
         seed=seed,
         out=out,
         as_json=json,
@@ -218,6 +225,7 @@ def vehicle_double(
     port: Annotated[int, Parameter(validator=validators.Number(gte=1, lte=65535))] = 14540,
     fault: Annotated[list[str] | None, Parameter(negative="")] = None,
     mission: Path | None = None,
+    camera: int | None = None,
     seed: Seed = None,
     debug: Flag = False,
 ) -> ExitCode:
@@ -229,12 +237,14 @@ def vehicle_double(
         fault: NAME@SECONDS, what goes wrong, and when; may be given several times. Names: silence, heartbeat,
             refuse-arm, position-lost, position-jump, delay, reorder, duplicate, corrupt, pilot, battery, no-gripper.
         mission: The mission in whose world it flies. Default: nothing is around it.
+        camera: Port for pictures of that world, drawn where the double says it is: the frame source sim://127.0.0.1:PORT.
+            Default: none.
         seed: Of the world, and of what is drawn at random. Default: as the file says.
         debug: Show the traceback of an error.
     """
     from mintpilot.cli.vehicle_double import serve_double
 
-    return guarded(lambda: serve_double(flavour, port, fault or [], mission, seed), as_json=False, debug=debug)
+    return guarded(lambda: serve_double(flavour, port, fault or [], mission, seed, camera), as_json=False, debug=debug)
 
 
 @app.command(
@@ -306,6 +316,7 @@ def see(
     longest: Annotated[int, Parameter(validator=validators.Number(gte=1))] = 200,
     perception: str = "segments",
     namer: Annotated[list[str], Parameter(name="--namer", negative="")] = [],  # noqa: B006
+    calibration: Path | None = None,
     seed: Seed = None,
     out: Path | None = None,
     json: Json = False,
@@ -328,6 +339,7 @@ def see(
         perception: Who makes objects of pictures: segments, geometric, or a plug-in's.
         namer: Who names what segments finds: geometry, ocr (text on things), vision (a vision-language model at
             MINTPILOT_VLM_URL), or a plug-in's; may be given several times. Default: geometry.
+        calibration: Measured confidences of the namers, as mintpilot bench perception --calibrate writes them.
         seed: Of simulated sources. Default: 0.
         out: Folder for map and report.
         json: Print one JSON object, and nothing else, on standard output.
@@ -349,7 +361,14 @@ def see(
     )
     return guarded(
         lambda: see_pictures(
-            source, options, perception=perception, namers=namer, instruction=instruction, out=out, as_json=json
+            source,
+            options,
+            perception=perception,
+            namers=namer,
+            calibration=calibration,
+            instruction=instruction,
+            out=out,
+            as_json=json,
         ),
         as_json=json,
         debug=debug,
@@ -447,6 +466,7 @@ app.command(
     help_epilogue=examples(
         "mintpilot export mission.yaml --to plan --out mission.plan",
         "mintpilot export runs/2026-11-28T10-00-00-survey --to wpl --firmware ardupilot",
+        "mintpilot export fire-warehouse --to usd --out warehouse.usda",
     ),
 )
 
@@ -476,12 +496,16 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Runs the program with these words (default: those of the command line); returns its exit code."""
     words = list(sys.argv[1:] if arguments is None else arguments)
     listen()
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, TextIOWrapper):
+            stream.reconfigure(errors="replace")  # a narrow encoding must not end a flight
     try:
         code = app(words, exit_on_error=False, print_error=False)
     except CycloptsError as error:
         return fail(f"{error}; see mintpilot --help", as_json="--json" in words)
-    except KeyboardInterrupt:
-        return ExitCode.INTERRUPTED
+    except KeyboardInterrupt as stopped:
+        code, message = verdict_on(stopped)
+        return fail(message, as_json="--json" in words, code=code)
     return int(code or 0)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from contextlib import suppress
 from types import TracebackType
 from typing import Self
@@ -51,6 +52,7 @@ class Narrator:
                 SpinnerColumn(), TextColumn("{task.description}"), TimeElapsedColumn(), console=console, transient=True
             )
         self._pictures = 0
+        self._stops: dict[str, str] = {}
         self.noticed = ""
         """What was noticed last, in words."""
 
@@ -71,7 +73,9 @@ class Narrator:
             return
         if isinstance(event, Noticed):
             self.noticed = event.text
-        line, stage = told(event)
+        if isinstance(event, PlanChosen) and event.plan is not None:
+            self._stops |= {leg.stop.id: leg.stop.text for leg in event.plan.legs}
+        line, stage = told(event, self._stops)
         if line:
             self._say(line)
         if stage:
@@ -136,8 +140,13 @@ class Attended(Operator):
         return self._operator.poll(time_s)
 
 
-def told(event: Event) -> tuple[str, str]:
-    """The line that an event is worth, and the stage that begins with it; either may be empty."""
+def told(event: Event, stops: Mapping[str, str] | None = None) -> tuple[str, str]:
+    """The line that an event is worth, and the stage that begins with it; either may be empty.
+
+    Args:
+        event: what happened.
+        stops: what is done at each stop, by its id.
+    """
     if isinstance(event, MissionStarted):
         return f"Mission '{event.mission.name}': {event.mission.instruction}", "looking around"
     if isinstance(event, MapUpdated):
@@ -164,7 +173,8 @@ def told(event: Event) -> tuple[str, str]:
     if isinstance(event, LegFlown) and event.phase == "survey":
         return "", "surveying"
     if isinstance(event, LegFlown):
-        return f"Flown ({event.phase}): {event.stop_id}, {event.log.end.value}.", ""
+        where = "back to the start" if event.phase == "return" else (stops or {}).get(event.stop_id, "")
+        return f"Flown ({event.phase}): {f'{where}, ' if where else ''}{event.log.end.value}.", ""
     if isinstance(event, OrderTaken):
         return f"Order: {event.order.value}. {event.answer}", ""
     if isinstance(event, Noticed):

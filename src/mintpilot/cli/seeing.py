@@ -19,6 +19,7 @@ def see_pictures(
     *,
     perception: str,
     namers: Sequence[str],
+    calibration: Path | None,
     instruction: str | None,
     out: Path | None,
     as_json: bool,
@@ -29,7 +30,13 @@ def see_pictures(
 
     name = where or str(options.color)
     report = see(
-        open_source(where, options), name=name, perception=perception, namers=namers, instruction=instruction, out=out
+        open_source(where, options),
+        name=name,
+        perception=perception,
+        namers=namers,
+        calibration=calibration,
+        instruction=instruction,
+        out=out,
     )
     print(report.model_dump_json() if as_json else "\n".join(lines_of(report, out)))
     return ExitCode.SUCCESS

@@ -4,22 +4,29 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from mintpilot.cli.exits import ExitCode
+from mintpilot.core.errors import InputError
 
 if TYPE_CHECKING:
     from mintpilot.conformance.vehicle_double.serving import DoubleSetup
 
 
-def serve_double(flavour: str, port: int, faults: Sequence[str], mission: Path | None, seed: int | None) -> ExitCode:
+def serve_double(
+    flavour: str, port: int, faults: Sequence[str], mission: Path | None, seed: int | None, camera: int | None
+) -> ExitCode:
     """Runs a double until Ctrl-C."""
     from mintpilot.conformance.vehicle_double.serving import DoubleLoop
 
-    setup = _setup(flavour, port, faults, mission, seed)
+    if camera is not None and mission is None:
+        raise InputError(f"--camera {camera}: pictures need a world; name one with --mission")
+    setup = replace(_setup(flavour, port, faults, mission, seed), camera_port=camera)
     loop = DoubleLoop(setup)
-    print(f"A {flavour} vehicle double sends to 127.0.0.1:{port}; Ctrl-C ends it.", file=sys.stderr)
+    pictures = f", pictures at sim://127.0.0.1:{loop.camera_port}" if loop.camera_port is not None else ""
+    print(f"A {flavour} vehicle double sends to 127.0.0.1:{port}{pictures}; Ctrl-C ends it.", file=sys.stderr)
     mode = ""
     try:
         while True:

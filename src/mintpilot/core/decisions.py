@@ -7,7 +7,7 @@ from typing import TypeAlias
 
 from mintpilot.core.gap import Belief, KnowledgeGap
 from mintpilot.core.geometry import Bools, Vec3, frozen
-from mintpilot.core.plan import Plan
+from mintpilot.core.plan import Plan, Prospect, Stop
 from mintpilot.core.query import Question
 from mintpilot.core.semantic_map import Knowledge
 from mintpilot.core.trajectory import Trajectory
@@ -49,6 +49,11 @@ class AskQuestion:
     alternatives: tuple[ScoredQuery, ...] = ()
     bound_bits: float | None = None
     """No query whatever could tell more of the plan class than this; None: not worked out."""
+    waits_s: float = float("inf")
+    """How long an answer may be waited for until the cautious plan, with its reserve, must begin to fit the battery,
+    seconds; infinite where there is no such plan, or no end of the battery."""
+    prospects: tuple[Prospect, ...] = ()
+    """What the answer may come to, the cautious plan last where there is one; empty where the drone holds meanwhile."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -113,4 +118,16 @@ class GoBack:
     """Of that flight, seconds."""
 
 
-Decision: TypeAlias = AskQuestion | FlyPlan | NoPlan | FlyTrajectory | RefuseFlight | Explore | GoBack
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Meanwhile:
+    """What is done while a question is open (method, section 10): a flight, a stop right here, or neither."""
+
+    trajectory: Trajectory | None = None
+    """Through what is known free, to where the answer will cost less; None: no flight."""
+    stop: Stop | None = None
+    """What every plan does here first; None: nothing."""
+    needed_s: float | None = None
+    """When the cautious plan must begin from where this ends, mission clock; None: as before."""
+
+
+Decision: TypeAlias = Meanwhile | AskQuestion | FlyPlan | NoPlan | FlyTrajectory | RefuseFlight | Explore | GoBack

@@ -110,7 +110,7 @@ class LegFlown:
     """One trajectory was flown, to its end or not."""
 
     phase: str
-    """``survey``, ``mission``, ``retreat``, ``return`` or ``landing``."""
+    """``survey``, ``mission``, ``meanwhile`` (a question is open), ``retreat``, ``return`` or ``landing``."""
     stop_id: str
     trajectory: Trajectory
     log: FlightLog

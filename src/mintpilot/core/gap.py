@@ -18,6 +18,10 @@ PASSABLE = "passable"
 BLOCKED = "blocked"
 PRESENT = "present"
 ABSENT = "absent"
+NONE_OF_THEM = "none of them"
+NOT_YET_SEEN = "not yet seen"
+NOWHERE = (NONE_OF_THEM, NOT_YET_SEEN)
+"""Values of a target gap that are no candidates: the phrase means nothing that was seen, or it is in no picture yet."""
 FLY = "fly"
 STAY = "stay"
 
@@ -28,7 +32,7 @@ class GapKind(StrEnum):
     OBSTACLE = "obstacle"
     """Is this region passable? Values: `PASSABLE`, `BLOCKED`."""
     TARGET = "target"
-    """Which object does this phrase mean? Values: ids of the candidates."""
+    """Which object does this phrase mean? Values: ids of the candidates; where names are in doubt, `NOWHERE` too."""
     PRESENCE = "presence"
     """Is somebody in this place? Values: `PRESENT`, `ABSENT`."""
     VALUE = "value"
@@ -103,7 +107,9 @@ class KnowledgeGap:
     position_m: Vec3
     """Where its subject is (for a target gap: the middle of the candidates)."""
     candidates: tuple[Candidate, ...] = ()
-    """For a target gap: one per value, in the same order."""
+    """For a target gap: one per value that is a thing, in the same order."""
+    is_thing: bool = False
+    """For a presence gap: its subject is a thing that may be somebody, not a place that may hold somebody."""
 
     def __post_init__(self) -> None:
         if not self.values or len(set(self.values)) != len(self.values):
@@ -112,8 +118,14 @@ class KnowledgeGap:
             raise MissionError(f"gap '{self.id}': {len(self.prior)} probabilities for {len(self.values)} values")
         if any(not 0 <= p <= 1 for p in self.prior) or not math.isclose(sum(self.prior), 1, abs_tol=SUM_TOLERANCE):
             raise MissionError(f"gap '{self.id}': prior {self.prior} must be from 0 to 1 each and sum to 1")
-        if self.candidates and tuple(c.id for c in self.candidates) != self.values:
+        things = tuple(v for v in self.values if v not in NOWHERE)
+        if self.candidates and tuple(c.id for c in self.candidates) != things:
             raise MissionError(f"gap '{self.id}': the candidates' ids must be its values, in order")
+
+    @property
+    def in_doubt(self) -> bool:
+        """Whether a phrase may mean none of its candidates."""
+        return any(v in NOWHERE for v in self.values)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

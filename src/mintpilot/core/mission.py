@@ -22,6 +22,15 @@ class CriticalityRule(StrEnum):
     """Cost above its threshold."""
 
 
+class WhileWaiting(StrEnum):
+    """What the drone does while a question is open (method, section 10)."""
+
+    HOLD = "hold"
+    """It hovers."""
+    MOVE = "move"
+    """It flies on through known free space, to where the answer will cost least."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Bounds:
     """What a setting is, and between which limits."""
@@ -104,7 +113,17 @@ class AskingSettings:
         "may be wrong (`answer_error`).",
         least=0,
     )
-    patience_s: float = setting(30.0, "How long an answer is waited for, seconds.", least=0)
+    patience_s: float = setting(
+        30.0, "How long an answer is waited for at most, seconds; less where the battery needs it.", least=0
+    )
+    reply_s: float = setting(
+        10.0, "Seconds that a yes or no is expected to take: what the battery may lose meanwhile is weighed.", least=0
+    )
+    while_waiting: WhileWaiting = setting(  # noqa: RUF009  (a field, with its words)
+        WhileWaiting.MOVE,
+        "What the drone does while a question is open: hover (`hold`), or fly on through known free space to where the "
+        "answer will cost least (`move`).",
+    )
     answer_valid_s: float = setting(
         600.0, "How long a yes for a region counts, seconds; then it is asked again.", least=0
     )
@@ -264,6 +283,16 @@ def left_of(undone: LeftUndone) -> Left:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Waiting:
+    """What waiting for answers took."""
+
+    delay_s: float = 0.0
+    """From questions shown to their answers, or to the end of waiting, seconds."""
+    hidden_s: float = 0.0
+    """Of that, what the drone flew meanwhile towards what had to be flown anyway, by its plans, seconds."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Verdict:
     """What really happened, as the simulator saw it; on a real vehicle, as far as it is known."""
 
@@ -274,3 +303,4 @@ class Verdict:
     """What was done, in order."""
     left: tuple[Left, ...] = ()
     """What was to be done and was not."""
+    waiting: Waiting = Waiting()

@@ -10,7 +10,7 @@ from enum import StrEnum
 import numpy as np
 
 from mintpilot.core.errors import MissionError
-from mintpilot.core.gap import KnowledgeGap
+from mintpilot.core.gap import Assumptions, KnowledgeGap
 from mintpilot.core.geometry import Floats, Vec3, frozen
 from mintpilot.core.semantic_map import SemanticMap
 from mintpilot.core.task import Action
@@ -106,6 +106,8 @@ class Shortage(StrEnum):
     """What it would deliver is not picked up."""
     ANSWER = "answer"
     """Which of several places is meant is not known."""
+    UNSEEN = "unseen"
+    """It is none of the things that were seen."""
     PRICE = "price"
     """The flight would cost more than leaving it undone."""
 
@@ -137,6 +139,8 @@ class LeftUndone:
                 return "what it needs is not picked up"
             case Shortage.ANSWER:
                 return "which one is meant is not known"
+            case Shortage.UNSEEN:
+                return "it is none of the things that were seen"
 
 
 def _seconds(needed: float, given: float) -> tuple[str, str]:
@@ -204,6 +208,8 @@ class Plan:
     """Ids of gaps, open under the assumptions it was planned with, that it depends on. Empty for a cautious plan."""
     enters: frozenset[str]
     """Ids of all obstacle gaps whose regions it flies through, open or not; on the way home, too, where it returns."""
+    home_s: float = 0.0
+    """Flight from its last stop to the start where the drone must return, else 0, seconds; no part of the cost."""
     binds: tuple[tuple[str, str], ...] = ()
     """(gap id, value) chosen for each target gap, sorted."""
     skips: frozenset[str] = frozenset()
@@ -237,3 +243,20 @@ class Plan:
     def length_m(self) -> float:
         """Length of the way, metres."""
         return float(sum(leg.length_m for leg in self.legs))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Prospect:
+    """One plan that an open question may come to."""
+
+    probability: float
+    """Of its plan class; 0 for the cautious plan, which is flown when no answer comes."""
+    plan: Plan
+    """From where the question was asked."""
+    given: tuple[Assumptions, ...]
+    """Under which answers it is flown: one of these, which exclude each other."""
+    free: frozenset[str]
+    """Ids of the obstacle gaps whose regions are passable if it comes to it."""
+    spare_s: float
+    """How much later it may begin and still fit the battery with reserve and way home, from when the question was
+    thought of, seconds; infinite without an end of the battery."""

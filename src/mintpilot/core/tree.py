@@ -128,6 +128,8 @@ class StopReason(StrEnum):
     """The operator does not answer."""
     INFEASIBLE = "infeasible"
     """No plan exists under any hypothesis that is left."""
+    WAITING = "waiting"
+    """Waiting for an answer may lose more than the answer gives: the battery runs meanwhile."""
     NEVER_ASKS = "never-asks"
     """The strategy does not ask."""
     LIMIT = "limit"

@@ -121,8 +121,8 @@ def _queries(literals: dict[str, tuple[Literal, ...]], gaps: Iterable[KnowledgeG
     for gap in gaps:
         if gap.kind is GapKind.TARGET:
             yield from _pairs(literals[gap.id])
-    for kind in (GapKind.OBSTACLE, GapKind.PRESENCE):
-        same = [literals[g.id][0] for g in gaps if g.kind is kind and literals[g.id]]
+    for kind, of_things in ((GapKind.OBSTACLE, False), (GapKind.PRESENCE, False), (GapKind.PRESENCE, True)):
+        same = [literals[g.id][0] for g in gaps if g.kind is kind and g.is_thing is of_things and literals[g.id]]
         for count in range(2, MAX_TOGETHER + 1):
             for together in combinations(same, count):
                 yield Query(literals=together, combine=Combine.ANY)

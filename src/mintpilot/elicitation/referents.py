@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from mintpilot.core.gap import Candidate, KnowledgeGap
+from mintpilot.core.gap import NOWHERE, Candidate, KnowledgeGap
 from mintpilot.core.geometry import Vec3
 from mintpilot.core.query import Literal, Saying, SayingKind
 
@@ -24,7 +24,12 @@ CLEARLY_NEARER = 1.15
 
 
 def referent_literals(gap: KnowledgeGap, start_m: Vec3 | None) -> tuple[Literal, ...]:
-    """Names, attributes and relations of a target gap's candidates, as literals."""
+    """Names, attributes and relations of a target gap's candidates, as literals.
+
+    Where it may be none of them only names are asked for: what is meant may be red too, and yet in no picture.
+    """
+    if gap.in_doubt:
+        return tuple(_names(gap))
     return (*_names(gap), *_attributes(gap), *_relations(gap, start_m))
 
 
@@ -35,6 +40,8 @@ def name_of(candidate: Candidate) -> str:
 
 def _names(gap: KnowledgeGap) -> Iterator[Literal]:
     for value in gap.values:
+        if value in NOWHERE:
+            continue
         yield Literal(gap=gap.id, values=frozenset({value}), saying=Saying(kind=SayingKind.VALUE, value=value))
 
 

@@ -54,7 +54,9 @@ def _sentence(query: Query, gaps: Mapping[str, KnowledgeGap], attempt: int, name
     kinds = {gaps[x.gap].kind for x in query.literals}
     if kinds == {GapKind.OBSTACLE}:
         return _obstacles(subjects, query.combine, first)
-    if kinds == {GapKind.PRESENCE}:
+    if kinds == {GapKind.PRESENCE} and all(gaps[x.gap].is_thing for x in query.literals):
+        return _people(subjects, query.combine, first)
+    if kinds == {GapKind.PRESENCE} and not any(gaps[x.gap].is_thing for x in query.literals):
         return _rooms(subjects, query.combine, first)
     if kinds == {GapKind.TARGET} and len(query.gap_ids) == 1:
         return _referent(query, gaps[query.gap_ids[0]], first)
@@ -77,6 +79,16 @@ def _obstacles(subjects: list[str], combine: Combine, first: bool) -> str:
     both = "both" if len(subjects) == 2 else "all"
     every = joined(subjects, "and")
     return f"Are {inset(every)} {both} safe to fly through?" if first else f"Is it safe to fly through {both}, {every}?"
+
+
+def _people(subjects: list[str], combine: Combine, first: bool) -> str:
+    if len(subjects) == 1:
+        return f"Is {inset(subjects[0])} a person?" if first else f"Is this somebody: {subjects[0]}?"
+    if combine is Combine.ANY:
+        either = joined(subjects, "or")
+        return f"Is {inset(either)} a person?" if first else f"Is one of these a person: {either}?"
+    every = joined(subjects, "and")
+    return f"Are {inset(every)} all people?" if first else f"Is each of these a person: {every}?"
 
 
 def _rooms(subjects: list[str], combine: Combine, first: bool) -> str:
@@ -127,6 +139,8 @@ def _fact(literal: Literal, gap: KnowledgeGap, name: Callable[[KnowledgeGap], st
     saying = literal.saying
     if gap.kind is GapKind.OBSTACLE:
         return f"{name(gap)} is safe"
+    if gap.is_thing:
+        return f"{name(gap)} is a person"
     if gap.kind is GapKind.PRESENCE:
         return f"somebody is inside {name(gap)}"
     if saying.kind is SayingKind.THRESHOLD:

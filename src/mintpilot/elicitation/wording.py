@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from mintpilot.core.gap import PASSABLE, GapKind, KnowledgeGap
+from mintpilot.core.gap import NOWHERE, PASSABLE, GapKind, KnowledgeGap
 from mintpilot.core.geometry import Bools
 from mintpilot.core.plan import Plan
 from mintpilot.core.query import NO_PART, YES_PART, Query, Question
@@ -17,6 +17,8 @@ from mintpilot.elicitation.sentences import sentence
 
 MOST_NAMED = 2
 """So many candidates that are left are named; more are counted."""
+NOT_SEEN = "I take it that it was not seen"
+"""What follows when a phrase means none of the things that were seen."""
 
 
 def word_question(query: Query, gaps: Sequence[KnowledgeGap], mint: Mint | None, *, attempt: int = 1) -> Question:
@@ -91,6 +93,12 @@ def _left(query: Query, about: tuple[KnowledgeGap, ...], part: int, mint: Mint) 
     gap = about[0]
     chances = mint.belief.marginal(gap.id)
     left = [v for v, p in zip(gap.values, chances, strict=True) if p > 0 and query.part_of({gap.id: v}) == part]
+    things = [value for value in left if value not in NOWHERE]
+    if left and not things:
+        return NOT_SEEN
+    if len(things) == 1 and len(left) > 1:
+        return f"I ask further: {thing_called(gap, things[0])}"
+    left = things
     if len(left) == 1:
         return f"I probably fly to {thing_called(gap, left[0])}"
     if len(left) <= MOST_NAMED:
@@ -107,6 +115,8 @@ def _likeliest(mint: Mint, agrees: Bools) -> tuple[Plan | None, bool]:
 
 
 def _flight(plan: Plan | None, sure: bool, about: tuple[KnowledgeGap, ...], left: str) -> str:
+    if left == NOT_SEEN:
+        return left
     if plan is None:
         return "I find no safe way" if sure else "I may find no safe way"
     i = "I" if sure else "I probably"
@@ -121,6 +131,8 @@ def _flight(plan: Plan | None, sure: bool, about: tuple[KnowledgeGap, ...], left
         visited = [g for g in about if g.id not in plan.skips | undone]
         if len(about) == 1 and about[0].id in undone:
             return f"{i} cannot reach it, and do what else I can"
+        if about[0].is_thing and visited:
+            return f"{i} fly to {'it' if len(about) == 1 else joined([subject_of(g) for g in visited], 'and')}"
         if not visited:
             return f"{i} fly past it" if len(about) == 1 else f"{i} fly past them"
         if len(about) == 1:
@@ -144,7 +156,8 @@ def _general(query: Query, about: tuple[KnowledgeGap, ...], part: int) -> str:
     if kinds == {GapKind.OBSTACLE} and all(PASSABLE in g.values for g in about):
         return f"I may fly through {it}" if yes else f"I fly around {it}"
     if kinds == {GapKind.PRESENCE}:
-        return "I look inside" if yes else f"I fly past {it}"
+        there = f"I fly to {it}" if about[0].is_thing else "I look inside"
+        return there if yes else f"I fly past {it}"
     if kinds == {GapKind.TARGET}:
         return "I take it that you mean that" if yes else "I take it that you mean another"
     return "I plan with this" if yes else "I plan with the opposite"

@@ -13,6 +13,7 @@ from mintpilot.core.gap import GapKind, kind_of
 from mintpilot.core.inputs import Answered, OperatorInput, Ordered, QuestionShown
 from mintpilot.core.ports import Operator, TruthOracle
 from mintpilot.core.query import YES_PART, Answer, Order, Question, Reply, answer_for
+from mintpilot.core.think_time import ThinkTime
 
 
 @dataclass(slots=True)
@@ -86,10 +87,10 @@ class ScriptedOperator(_Script):
             equally likely.
         unsure_rate: probability of "I don't know".
         silence_rate: probability of no answer at all.
-        latency_s: seconds of mission time that an answer takes; longer than the patience is silence.
+        think: mission time that an answer takes; longer than the patience is silence.
 
     Raises:
-        InputError: a rate is not a probability, or the latency is negative.
+        InputError: a rate is not a probability.
     """
 
     def __init__(
@@ -100,7 +101,7 @@ class ScriptedOperator(_Script):
         answer_error: float = 0.0,
         unsure_rate: float = 0.0,
         silence_rate: float = 0.0,
-        latency_s: float = 0.0,
+        think: ThinkTime = ThinkTime(),  # noqa: B008  (a value)
     ) -> None:
         super().__init__("scripted")
         for name, rate in (
@@ -110,37 +111,44 @@ class ScriptedOperator(_Script):
         ):
             if not 0 <= rate <= 1:
                 raise InputError(f"scripted operator {name} = {rate}: must be a probability from 0 to 1")
-        if not latency_s >= 0:
-            raise InputError(f"scripted operator latency_s = {latency_s}: must be 0 or more seconds")
         self._truth = truth
         self._rng = rng
         self._answer_error = answer_error
         self._unsure_rate = unsure_rate
         self._silence_rate = silence_rate
-        self._latency_s = latency_s
+        self._think = think
+        self._thinking = rng.spawn(1)[0]
 
     def answer(self, question: Question, patience_s: float) -> Answer:
         """The true answer to the question's query (its words are not looked at), or what the rates make of it.
 
         A query that speaks of a gap without a true value is answered UNSURE; a briefing before take-off with yes.
         """
+        answer = self._thought_of(question)
+        late = answer is None or answer.latency_s > patience_s
+        return Answer(reply=Reply.TIMEOUT, latency_s=patience_s) if late or answer is None else answer
+
+    def _thought_of(self, question: Question) -> Answer | None:
+        """What it says once it has thought, however long that takes; None: nothing."""
         if any(kind_of(name) is GapKind.GO for name in question.query.gap_ids):
             return answer_for(question.query, YES_PART, text="yes")
         wrong, unsure, silent = self._rng.random(3) < (self._answer_error, self._unsure_rate, self._silence_rate)
-        if silent or self._latency_s > patience_s:
-            return Answer(reply=Reply.TIMEOUT, latency_s=patience_s)
+        latency_s = self._think.draw(self._thinking)
+        if silent:
+            return None
         part = self._true_part(question)
         if part is None or unsure:
-            return Answer(reply=Reply.UNSURE, latency_s=self._latency_s, text="don't know")
+            return Answer(reply=Reply.UNSURE, latency_s=latency_s, text="don't know")
         query = question.query
         if wrong:
             others = [other for other in range(query.part_count) if other != part]
             # The only other part of a yes/no query needs no draw.
             part = others[0] if len(others) == 1 else others[int(self._rng.integers(len(others)))]
-        return answer_for(query, part, latency_s=self._latency_s, text=query.part_words(part))
+        return answer_for(query, part, latency_s=latency_s, text=query.part_words(part))
 
     def _reply(self, question: Question, patience_s: float) -> Answer:
-        return self.answer(question, patience_s)
+        # A deadline may move while the drone does: who thinks for longer is told by the question's end.
+        return self._thought_of(question) or Answer(reply=Reply.TIMEOUT, latency_s=patience_s)
 
     def _true_part(self, question: Question) -> int | None:
         values = {gap.id: value for gap in question.gaps if (value := self._truth.value_of(gap)) is not None}

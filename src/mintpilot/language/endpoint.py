@@ -76,6 +76,11 @@ class EndpointModel(LanguageModel, VisionModel):
                 f"language model address {shown} cannot be used: set {URL_VARIABLE} to an http or https address "
                 "without a key in it, e.g. http://localhost:11434/v1"
             )
+        if parts.query or parts.fragment:
+            raise InputError(
+                f"language model address {shown} has a query ('?') or a fragment ('#'), which cannot be used: set "
+                f"{URL_VARIABLE} to the base address alone, e.g. http://localhost:11434/v1"
+            )
         if not self._model:
             raise InputError(f"no language model is named for {parts.hostname}: set {MODEL_VARIABLE}, e.g. 'qwen3:4b'")
         if any(find_spec(part) is None for part in _PARTS):

@@ -136,7 +136,7 @@ def _kind(literal: Literal, gap: KnowledgeGap) -> str:
     if gap.kind is GapKind.OBSTACLE:
         return PASSABLE if literal.values == {PASSABLE} else ""
     if gap.kind is GapKind.PRESENCE:
-        return PRESENT if literal.values == {PRESENT} else ""
+        return PRESENT if literal.values == {PRESENT} and not gap.is_thing else ""
     if gap.kind is GapKind.TARGET:
         return {SayingKind.VALUE: VALUE, SayingKind.ATTRIBUTE: ATTRIBUTE}.get(literal.saying.kind, "")
     return ""

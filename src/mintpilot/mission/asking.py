@@ -7,6 +7,7 @@ from dataclasses import replace
 from mintpilot.core.decisions import AskQuestion, Reasoning
 from mintpilot.core.inputs import Answered, MoreTimeWanted, QuestionReworded, QuestionShown
 from mintpilot.core.query import Answer, Query, Reply, Standing
+from mintpilot.mission import meanwhile
 from mintpilot.mission.belief_state import BeliefState, confirmed_by, update
 from mintpilot.mission.deliberation import settle
 from mintpilot.mission.directives import ShowQuestion
@@ -35,30 +36,42 @@ def take_over(t: Transition, reasoning: Reasoning) -> None:
             t.note("bound", f"A bound on the work was reached: {bound}.")
 
 
-def put(t: Transition, decision: AskQuestion) -> None:
-    """Puts the question; its deadline runs from when it is shown."""
+def put(t: Transition, decision: AskQuestion, begun_s: float) -> None:
+    """Puts the question; its deadline runs from when it is shown.
+
+    Args:
+        t: the step in the making.
+        decision: the question.
+        begun_s: when it began to be thought of: the battery has run since, mission clock.
+    """
     question = replace(decision.question, id=f"q{t.next_id()}")
-    patience_s = t.state.setup.mission.asking.patience_s
+    patient_until_s = t.state.clock_s + t.state.setup.mission.asking.patience_s
+    needed_s = begun_s + decision.waits_s
+    patience_s = max(0.0, min(patient_until_s, needed_s) - t.state.clock_s)
     t.set(
         question=OpenQuestion(
             question=question,
             scored=decision.scored,
             asked_s=t.state.clock_s,
             shown_map=t.beliefs.map,
-            deadline_s=t.state.clock_s + patience_s,
+            patient_until_s=patient_until_s,
+            needed_s=needed_s,
+            prospects=decision.prospects,
+            thought_s=begun_s,
         ),
         asked_gaps=t.state.asked_gaps | set(question.query.gap_ids),
         activity=Activity.NONE,
     )
     t.give(ShowQuestion(question=question, patience_s=patience_s))
+    meanwhile.prepare(t)
 
 
 def shown(t: Transition, event: QuestionShown) -> None:
     """Somebody has the question in front of them."""
     open_ = t.state.question
     if open_ is not None and open_.question.id == event.question and open_.shown_s is None:
-        deadline_s = event.time_s + (open_.deadline_s - open_.asked_s)
-        t.set(question=replace(open_, shown_s=event.time_s, deadline_s=deadline_s))
+        until_s = event.time_s + (open_.patient_until_s - open_.asked_s)
+        t.set(question=replace(open_, shown_s=event.time_s, patient_until_s=until_s))
 
 
 def reworded(t: Transition, event: QuestionReworded) -> None:
@@ -86,6 +99,7 @@ def answered(t: Transition, event: Answered) -> None:
     elif _must_be_read_back(t, open_.question.query, answer):
         if open_.read_backs >= MAX_READ_BACKS:
             _learn(t, open_, replace(answer, reply=Reply.UNSURE, option=None))
+            meanwhile.over(t, open_, Reply.UNSURE)
             t.withdraw("no answer was confirmed")
             return
         read_back = replace(open_.question, read_back=replace(answer, standing=Standing.UNCONFIRMED))
@@ -93,6 +107,7 @@ def answered(t: Transition, event: Answered) -> None:
         t.give(ShowQuestion(question=read_back, patience_s=max(0.0, open_.deadline_s - t.state.clock_s)))
         return
     _learn(t, open_, answer)
+    meanwhile.over(t, open_, answer.reply)
     t.withdraw("it was answered")
 
 
@@ -104,9 +119,12 @@ def more_time(t: Transition, event: MoreTimeWanted) -> None:
     if open_.extended:
         t.tell("I cannot wait any longer than that.")
         return
-    patience_s = t.state.setup.mission.asking.patience_s
-    t.set(question=replace(open_, extended=True, deadline_s=open_.deadline_s + patience_s))
-    t.tell(f"I wait {patience_s:.0f} s more.")
+    longer = replace(
+        open_, extended=True, patient_until_s=open_.patient_until_s + t.state.setup.mission.asking.patience_s
+    )
+    more_s = longer.deadline_s - open_.deadline_s
+    t.set(question=longer)
+    t.tell(f"I wait {more_s:.0f} s more." if more_s > 0 else "I cannot wait longer: the battery does not allow it.")
 
 
 def unanswered(t: Transition) -> None:
@@ -114,6 +132,7 @@ def unanswered(t: Transition) -> None:
     open_ = t.state.question
     assert open_ is not None
     _learn(t, open_, Answer(reply=Reply.TIMEOUT, latency_s=_waited_s(t, open_)))
+    meanwhile.over(t, open_, Reply.TIMEOUT)
     t.withdraw("no answer came in time")
     t.note("silence", "No answer came: the drone takes the way that is safe whatever holds.")
 

@@ -34,7 +34,7 @@ def brief(t: Transition, briefing: Briefing) -> None:
             question=question,
             scored=unscored,
             asked_s=t.state.clock_s,
-            deadline_s=t.state.clock_s + BRIEFING_S,
+            patient_until_s=t.state.clock_s + BRIEFING_S,
         ),
     )
     t.give(ShowQuestion(question=question, patience_s=BRIEFING_S))

@@ -9,9 +9,10 @@ from typing import Protocol
 
 from mintpilot.core.decisions import AskQuestion, FlyPlan, NoPlan, Reasoning
 from mintpilot.core.errors import InfeasibleError
-from mintpilot.core.gap import Belief, CorrelationGroup, KnowledgeGap
+from mintpilot.core.gap import PASSABLE, Assumptions, Belief, CorrelationGroup, GapKind, KnowledgeGap
 from mintpilot.core.geometry import Vec3
-from mintpilot.core.mission import AskingSettings, Mission, ReturnRule
+from mintpilot.core.mission import AskingSettings, Mission, ReturnRule, WhileWaiting
+from mintpilot.core.plan import Prospect
 from mintpilot.core.ports import (
     Ask,
     Decision,
@@ -32,6 +33,8 @@ from mintpilot.mapping.knowledge import apply_knowledge
 from mintpilot.mission.belief_state import BeliefState, remaining_budget
 from mintpilot.mission.explanations import explanations
 from mintpilot.reasoning.belief import extend
+from mintpilot.reasoning.waiting import longest_wait_s, spare_s
+from mintpilot.strategies.flying import cautious_plan
 from mintpilot.uncertainty.findings import Findings, Prices, find_gaps, frame_problem
 
 LEAST_ENDURANCE_S = 1e-3
@@ -157,7 +160,42 @@ def decision_of(found: Deliberation, parts: DeliberationParts, explained: frozen
         scored=choice.scored,
         alternatives=choice.alternatives,
         bound_bits=choice.bound_bits,
+        waits_s=longest_wait_s(cautious_plan(situation), situation.problem.limits),
+        prospects=prospects_of(situation, choice.mint) if parts.settings.while_waiting is WhileWaiting.MOVE else (),
     )
+
+
+def prospects_of(situation: Situation, mint: Mint | None) -> tuple[Prospect, ...]:
+    """What the answers may come to: the plan of each class, and the cautious one last; none where no tree was built."""
+    if mint is None:
+        return ()
+    limits, obstacles = situation.problem.limits, [g.id for g in situation.belief.gaps if g.kind is GapKind.OBSTACLE]
+    found = []
+    for one in mint.classes:
+        if one.plan is None:
+            continue
+        sure = [{gap for gap, values in given.items if values == frozenset({PASSABLE})} for given in one.given]
+        free = (one.plan.enters | frozenset(set.intersection(*sure))) & frozenset(obstacles)
+        found.append(
+            Prospect(
+                probability=one.probability,
+                plan=one.plan,
+                given=one.given,
+                free=free,
+                spare_s=spare_s(one.plan, limits),
+            )
+        )
+    cautious = cautious_plan(situation)
+    if cautious is not None:
+        safe = Prospect(
+            probability=0.0,
+            plan=cautious,
+            given=(Assumptions(),),
+            free=cautious.enters & frozenset(obstacles),
+            spare_s=spare_s(cautious, limits),
+        )
+        found.append(safe)
+    return tuple(found)
 
 
 def settle(map: SemanticMap, reasoning: Reasoning) -> SemanticMap:

@@ -9,7 +9,7 @@ import numpy as np
 from mintpilot.core.decisions import FlyPlan, FlyTrajectory, GoBack, RefuseFlight
 from mintpilot.core.inputs import Link, MapObserved
 from mintpilot.core.mission import Achieved, Outcome, ReturnRule
-from mintpilot.core.plan import Leg, Plan
+from mintpilot.core.plan import Leg, Plan, Stop
 from mintpilot.core.task import Action
 from mintpilot.mission.requests import Purpose
 from mintpilot.mission.state import Activity, Ending, Goal, uncertain_things
@@ -96,7 +96,7 @@ def plan_again(t: Transition) -> None:
 
 def arrived(t: Transition) -> None:
     """At the stop: does what it is for."""
-    t.act(_leg(t))
+    t.act(_leg(t).stop)
 
 
 def fulfilled(t: Transition) -> None:
@@ -104,14 +104,19 @@ def fulfilled(t: Transition) -> None:
     leg, beliefs = _leg(t), t.beliefs
     if leg.stop.action is Action.LOOK:
         beliefs = replace(beliefs, map=beliefs.map.with_room(leg.site.label, searched=True))
+    t.set(beliefs=beliefs, leg=t.state.leg + 1)
+    mark_done(t, leg.stop)
+    next_leg(t)
+
+
+def mark_done(t: Transition, stop: Stop) -> None:
+    """A stop was done."""
     begun_s = t.state.clock_s if t.state.task_begun_s is None else t.state.task_begun_s
-    done = Achieved(n=leg.stop.step, text=leg.stop.text or leg.stop.id, at_s=t.state.clock_s - begun_s)
+    done = Achieved(n=stop.step, text=stop.text or stop.id, at_s=t.state.clock_s - begun_s)
     t.set(
-        beliefs=replace(beliefs, finished=beliefs.finished | {leg.stop.id}),
-        leg=t.state.leg + 1,
+        beliefs=replace(t.beliefs, finished=t.beliefs.finished | {stop.id}),
         achieved=(*t.state.achieved, done),
     )
-    next_leg(t)
 
 
 def done_by_hand(t: Transition) -> None:

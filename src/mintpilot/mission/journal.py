@@ -33,6 +33,7 @@ _PHASES = {
     Activity.EXPLORE: "survey",
     Activity.SURVEY_BACK: "survey",
     Activity.LEG: "mission",
+    Activity.MEANWHILE: "meanwhile",
     Activity.RETREAT: "retreat",
     Activity.HOMEWARD: "return",
     Activity.TO_LANDING: "landing",

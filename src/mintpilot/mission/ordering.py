@@ -18,7 +18,7 @@ BLIND_S = 5.0
 SEEN_FREE_S = 60.0
 """Space that was seen free counts as free for so long once the camera is gone, seconds."""
 
-AWAITING_MAP = (Activity.FIRST_LOOK, Activity.SWEPT, Activity.ACTED)
+AWAITING_MAP = (Activity.FIRST_LOOK, Activity.SWEPT, Activity.ACTED, Activity.ACTED_MEANWHILE)
 """What waits for a new map, which does not come without a camera."""
 
 _ANSWERS = {

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from mintpilot.core.gap import ABSENT, BLOCKED, PASSABLE, PRESENT, Belief, GapKind, obstacle_id, presence_id
+from mintpilot.core.gap import ABSENT, BLOCKED, NOWHERE, PASSABLE, PRESENT, Belief, GapKind, obstacle_id, presence_id
 from mintpilot.core.mission import AskingSettings
 from mintpilot.core.query import YES_PART, Query
 from mintpilot.core.semantic_map import Knowledge, SemanticMap
@@ -37,7 +37,7 @@ def permissions(state: BeliefState, settings: AskingSettings) -> Permissions:
             leave_out.add(gap.id)
         if gap.kind is GapKind.TARGET and len(gap.values) > 1:
             p = belief.marginal(gap.id)
-            if float(p.max()) >= 1 - settings.alpha:
+            if float(p.max()) >= 1 - settings.alpha and gap.values[int(np.argmax(p))] not in NOWHERE:
                 pick.add((gap.id, gap.values[int(np.argmax(p))]))
     return Permissions(enter=frozenset(enter), leave_out=frozenset(leave_out), pick=frozenset(pick))
 

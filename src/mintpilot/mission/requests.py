@@ -15,6 +15,7 @@ from mintpilot.mission.belief_state import BeliefState
 from mintpilot.mission.deliberation import DeliberationParts, mission_decision
 from mintpilot.mission.navigation import explore, leg_trajectory, way_home, way_to_land
 from mintpilot.mission.way_back import is_stranded, way_back
+from mintpilot.planning.meanwhile import Wait, meanwhile
 
 
 class Purpose(StrEnum):
@@ -28,6 +29,8 @@ class Purpose(StrEnum):
     """Where to look around from next."""
     RETURN = "return"
     """The way to the start."""
+    MEANWHILE = "meanwhile"
+    """What to do while a question is open (method, section 10)."""
     LAND = "land"
     """The way to the nearest place to land at."""
 
@@ -64,6 +67,8 @@ class Request:
     assume_passable: frozenset[str] = frozenset()
     """Regions that a deliberately unsafe baseline flies through; empty for all others."""
     survey: SurveyProgress | None = None
+    wait: Wait | None = None
+    """The open question."""
 
 
 def decide(parts: DeliberationParts, request: Request) -> Decision:
@@ -75,6 +80,8 @@ def decide(parts: DeliberationParts, request: Request) -> Decision:
     map, limits, vehicle = request.state.map, parts.mission.limits, request.vehicle
     if request.purpose is Purpose.LEG and request.leg is not None:
         return leg_trajectory(request.leg, map, limits, vehicle, request.assume_passable)
+    if request.purpose is Purpose.MEANWHILE and request.wait is not None:
+        return meanwhile(request.wait, map, limits, vehicle)
     if request.purpose is Purpose.SURVEY and request.survey is not None:
         progress, settings = request.survey, parts.mission.survey
         return explore(

@@ -126,7 +126,7 @@ class Shell:
             failure = judge.final()
             if believed.outcome is Outcome.PARTIAL and failure.outcome in (Outcome.PERSON_MISSED, Outcome.NOT_REACHED):
                 return believed
-        return replace(failure, achieved=believed.achieved, left=believed.left)
+        return replace(failure, achieved=believed.achieved, left=believed.left, waiting=believed.waiting)
 
     def close(self) -> None:
         """Leaves the vehicle holding, and ends the worker."""

@@ -10,8 +10,8 @@ import numpy as np
 from mintpilot.core.briefing import Briefing
 from mintpilot.core.geometry import Floats
 from mintpilot.core.inputs import Link
-from mintpilot.core.mission import Achieved, Mission, Outcome, Verdict
-from mintpilot.core.plan import Plan, Stop
+from mintpilot.core.mission import Achieved, Mission, Outcome, Verdict, Waiting
+from mintpilot.core.plan import Plan, Prospect, Stop
 from mintpilot.core.query import Answer, Query, Question
 from mintpilot.core.semantic_map import SemanticMap
 from mintpilot.core.trajectory import VehicleState
@@ -54,6 +54,11 @@ class Activity(StrEnum):
     ACT = "act"
     ACTED = "acted"
     """Looking from the stop."""
+    MEANWHILE = "meanwhile"
+    """A flight while a question is open."""
+    ACT_MEANWHILE = "act-meanwhile"
+    ACTED_MEANWHILE = "acted-meanwhile"
+    """Looking from a stop that was done while a question is open."""
     RETREAT = "retreat"
     """Back out of a place that is not known free."""
     HOMEWARD = "homeward"
@@ -94,8 +99,16 @@ class OpenQuestion:
     question: Question
     scored: ScoredQuery
     asked_s: float
-    deadline_s: float
-    """When it counts as unanswered, mission clock."""
+    patient_until_s: float
+    """When the person's time is over, mission clock."""
+    needed_s: float = float("inf")
+    """When the cautious plan must begin to fit the battery with its reserve, mission clock."""
+    prospects: tuple[Prospect, ...] = ()
+    """What the answer may come to; empty where the drone holds meanwhile."""
+    thought_s: float = 0.0
+    """When the prospects' spare times began to run, mission clock."""
+    moves_s: float = float("inf")
+    """When it is to be thought about next what to do meanwhile, mission clock."""
     shown_s: float | None = None
     shown_map: SemanticMap | None = None
     """What it speaks of: a yes for a region covers the outline that it has here. None: it speaks of no region."""
@@ -108,6 +121,11 @@ class OpenQuestion:
     reworded_s: float | None = None
     """How long the better words took to make, seconds; None: there are none."""
 
+    @property
+    def deadline_s(self) -> float:
+        """When it counts as unanswered, mission clock."""
+        return min(self.patient_until_s, self.needed_s)
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PendingRequest:
@@ -118,6 +136,22 @@ class PendingRequest:
     deadline_s: float
     map: SemanticMap
     """What it looks at."""
+    begun_s: float = 0.0
+    """When it was asked for, mission clock."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class QuestionOver:
+    """A question that is over, until it is known what was flown meanwhile."""
+
+    expected_s: float
+    """What the plans that are left would cost from where it was asked, on average, seconds."""
+    undone_s: float
+    """Prices of what they leave undone, seconds."""
+    at_s: float
+    """When it was over, mission clock."""
+    delay_s: float
+    """How long it was open, seconds."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -159,6 +193,11 @@ class MissionState:
     grounded: bool = False
     """True until the briefing was answered with yes: nothing moves."""
     question: OpenQuestion | None = None
+    acting: Stop | None = None
+    """The stop that is done while a question is open."""
+    over: QuestionOver | None = None
+    """What was asked last, until it is known what was flown meanwhile."""
+    waiting: Waiting = Waiting()  # noqa: RUF009  (a value)
     learnt: Answer | None = None
     """The answer that was learnt from last, as it counted."""
     earlier: tuple[tuple[str, Query], ...] = ()
@@ -230,6 +269,8 @@ class MissionState:
     def next_deadline_s(self) -> float:
         """The next moment at which passing time alone changes something, mission clock; infinity: none."""
         times = [self.question.deadline_s] if self.question is not None else []
+        if self.question is not None and self.motion is None and self.request is None:
+            times.append(self.question.moves_s)
         if self.beliefs is not None:
             times += [g.given_s + self.setup.mission.asking.answer_valid_s for g in self.beliefs.grants]
         if self.request is not None:

@@ -11,6 +11,7 @@ from mintpilot.core.decisions import (
     FlyPlan,
     FlyTrajectory,
     GoBack,
+    Meanwhile,
     NoPlan,
     RefuseFlight,
 )
@@ -33,7 +34,7 @@ from mintpilot.core.mission import Outcome
 from mintpilot.core.motion import MotionEnd
 from mintpilot.core.semantic_map import Knowledge
 from mintpilot.core.trajectory import VehicleState
-from mintpilot.mission import asking, clearing, flying, ordering, surveying
+from mintpilot.mission import asking, clearing, flying, meanwhile, ordering, surveying
 from mintpilot.mission.belief_state import BeliefState
 from mintpilot.mission.directives import Directive
 from mintpilot.mission.path_monitor import with_passable
@@ -105,6 +106,8 @@ def _proceed(t: Transition) -> None:
     """At rest, with nothing open: begins what the goal wants next. Whatever was broken off is taken up here."""
     state = t.state
     busy = state.motion is not None or state.request is not None or state.question is not None
+    if state.question is not None and not state.grounded:
+        meanwhile.consider(t)
     if state.ended or busy or state.activity is not Activity.NONE:
         return
     if state.beliefs is None:
@@ -167,6 +170,10 @@ def _observed(t: Transition, event: MapObserved) -> None:
             t.set(activity=Activity.NONE)
             if t.state.goal is Goal.TASK:
                 flying.fulfilled(t)
+        case Activity.ACTED_MEANWHILE:
+            t.set(activity=Activity.NONE)
+            if t.state.goal is Goal.TASK:
+                meanwhile.looked(t)
         case _:
             flying.watch(t, event)
 
@@ -194,6 +201,10 @@ def _motion_ended(t: Transition, event: MotionEnded) -> None:
             surveying.came_back(t)
         case Activity.LEG if t.state.goal is Goal.TASK:
             flying.plan_again(t) if stopped else flying.arrived(t)
+        case Activity.MEANWHILE if t.state.question is not None:
+            meanwhile.arrived(t, held=stopped)
+        case Activity.ACT_MEANWHILE if t.state.question is not None and not stopped:
+            t.observe(Activity.ACTED_MEANWHILE)
         case Activity.ACT if t.state.goal is Goal.TASK and event.by_hand and not stopped:
             flying.done_by_hand(t)
             ordering.wait_for_hand(t, event.by_hand)
@@ -213,6 +224,10 @@ def _deliberated(t: Transition, event: DeliberationEnded) -> None:
         return
     t.set(request=None)
     decision = event.decision
+    if request.purpose is Purpose.MEANWHILE:
+        usable = isinstance(decision, Meanwhile) and not _is_outdated(t, request, decision)
+        meanwhile.decided(t, decision if usable and isinstance(decision, Meanwhile) else None)
+        return
     if decision is None:
         _without_decision(t, request, event.reason)
         return
@@ -227,9 +242,11 @@ def _deliberated(t: Transition, event: DeliberationEnded) -> None:
     match decision:
         case AskQuestion():
             asking.take_over(t, decision.reasoning)
-            asking.put(t, decision)
+            meanwhile.count(t, decision)
+            asking.put(t, decision, request.begun_s)
         case FlyPlan():
             asking.take_over(t, decision.reasoning)
+            meanwhile.count(t, decision)
             flying.chosen(t, decision)
         case NoPlan():
             t.give_up(decision.reason)
@@ -277,5 +294,7 @@ def _without_decision(t: Transition, request: PendingRequest, reason: str) -> No
             t.give_up(f"No plan could be worked out: {reason}.")
         case Purpose.SURVEY:
             surveying.begin_task(t)
+        case Purpose.MEANWHILE:
+            meanwhile.decided(t, None)
         case Purpose.RETURN | Purpose.LAND:
             flying.no_way_back(t, RefuseFlight(reason=reason))

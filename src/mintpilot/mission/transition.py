@@ -12,7 +12,7 @@ from mintpilot.core.geometry import Floats
 from mintpilot.core.inputs import Link
 from mintpilot.core.mission import Achieved, Left, Outcome, Verdict, left_of
 from mintpilot.core.motion import FollowTrajectory, Land, PerformAction, TakeOff
-from mintpilot.core.plan import Leg
+from mintpilot.core.plan import Leg, Stop
 from mintpilot.core.trajectory import Trajectory
 from mintpilot.mission.belief_state import BeliefState
 from mintpilot.mission.directives import (
@@ -36,6 +36,7 @@ from mintpilot.mission.state import (
     PendingRequest,
     uncertain_things,
 )
+from mintpilot.planning.meanwhile import Wait
 
 DELIBERATION_S = 10.0
 """A deliberation that has not come back after this time is overdue, seconds of mission clock."""
@@ -91,10 +92,10 @@ class Transition:
         assume = self.state.assume_passable if unsafe else frozenset[str]()
         self._begin(Move(motion=motion, monitored_m=monitored_m, assume_passable=assume), activity)
 
-    def act(self, leg: Leg) -> None:
-        """Does what the leg's stop is for."""
-        motion = PerformAction(id=self.next_id(), stop=leg.stop, dwell_s=leg.stop.dwell_s)
-        self._begin(Move(motion=motion), Activity.ACT)
+    def act(self, stop: Stop, activity: Activity = Activity.ACT) -> None:
+        """Does what the stop is for."""
+        motion = PerformAction(id=self.next_id(), stop=stop, dwell_s=stop.dwell_s)
+        self._begin(Move(motion=motion), activity)
 
     def take_off(self, height_m: float) -> None:
         """Climbs to the hover point."""
@@ -121,7 +122,7 @@ class Transition:
             self.set(motion=replace(motion, braking=True))
             self.give(Brake())
 
-    def request(self, purpose: Purpose, leg: Leg | None = None) -> None:
+    def request(self, purpose: Purpose, leg: Leg | None = None, *, wait: Wait | None = None) -> None:
         """Has something worked out; an earlier request is dropped."""
         state, beliefs = self.state, self.beliefs
         if state.is_down(Link.OPERATOR):
@@ -138,20 +139,26 @@ class Transition:
             leg=leg,
             assume_passable=state.assume_passable if purpose is Purpose.LEG else frozenset(),
             survey=state.survey if purpose is Purpose.SURVEY else None,
+            wait=wait,
         )
         pending = PendingRequest(
             id=request.id,
             purpose=purpose,
             deadline_s=state.clock_s + DELIBERATION_S,
             map=beliefs.map,
+            begun_s=state.clock_s,
         )
         self.set(request=pending, activity=Activity.NONE)
         self.give(Deliberate(request=request))
 
     def withdraw(self, why: str) -> None:
-        """Takes the open question back, if there is one."""
+        """Takes the open question back, if there is one, and ends what is done meanwhile."""
         open_ = self.state.question
         if open_ is not None:
+            if self.state.request is not None and self.state.request.purpose is Purpose.MEANWHILE:
+                self.set(request=None)
+            if self.state.activity in (Activity.MEANWHILE, Activity.ACT_MEANWHILE):
+                self.brake()
             self.set(question=None, earlier=(*self.state.earlier, (open_.question.id, open_.question.query)))
             self.give(WithdrawQuestion(question=open_.question.id, why=why))
 
@@ -184,7 +191,13 @@ class Transition:
     def finish(self, outcome: Outcome, reason: str) -> None:
         """The mission is over."""
         self.withdraw("the mission is over")
-        verdict = Verdict(outcome=outcome, reason=reason, achieved=self.state.achieved, left=self.left())
+        verdict = Verdict(
+            outcome=outcome,
+            reason=reason,
+            achieved=self.state.achieved,
+            left=self.left(),
+            waiting=self.state.waiting,
+        )
         self.set(goal=Goal.ENDED, request=None, verdict=verdict)
         self.give(Finish(verdict=verdict))
 

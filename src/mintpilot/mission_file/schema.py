@@ -13,11 +13,12 @@ from pydantic import ConfigDict, Field
 from mintpilot.mission_file.schema_asking import asking_spec
 from mintpilot.mission_file.schema_base import (
     Attributes,
+    Metres,
     Name,
     NotNegative,
     Place,
-    Positive,
     Probability,
+    Seconds,
     Several,
     Spec,
     Words,
@@ -32,19 +33,19 @@ class VehicleSpec(Spec):
 
     model_config = ConfigDict(validate_by_alias=True, validate_by_name=True)
 
-    radius_m: Positive = 0.3
+    radius_m: Annotated[float, Field(gt=0, le=100)] = 0.3
     """No part of the vehicle is further from its centre, metres."""
-    margin_m: NotNegative = 0.1
+    margin_m: Metres = 0.1
     """Clearance kept besides the radius, metres."""
-    position_sigma_m: NotNegative = 0.0
+    position_sigma_m: Metres = 0.0
     """Standard deviation of the known position, metres; three times as much is added to the margin."""
-    cruise_mps: Positive = 1.5
+    cruise_mps: Annotated[float, Field(ge=0.01, le=100)] = 1.5
     """Speed on straight legs, metres per second."""
-    max_acceleration_mps2: Positive = 2.0
+    max_acceleration_mps2: Annotated[float, Field(ge=0.01, le=100)] = 2.0
     """Of any commanded motion, metres per second squared."""
-    endurance_s: Positive | None = None
+    endurance_s: Annotated[float, Field(gt=0, le=1e6)] | None = None
     """Flight time for the mission, seconds; default: unlimited."""
-    reserve_s: NotNegative = 0.0
+    reserve_s: Seconds = 0.0
     """Flight time that no plan may use, seconds."""
     returns: Literal["required", "if-possible", "none"] = Field(default="none", alias="return")
     """Whether it flies back to the start when its task is done; `required`: every plan leaves battery for that."""
@@ -64,13 +65,13 @@ class AskingSpec(asking_spec()):  # type: ignore[misc]  # made of the fields of 
 class SurveySpec(Spec):
     """The flight that makes the map, for worlds that have none yet."""
 
-    spacing_m: Positive = 4.0
+    spacing_m: Annotated[float, Field(ge=0.1, le=1e3)] = 4.0
     """Between places to look around from, about, metres."""
-    speed_mps: Positive = 2.0
+    speed_mps: Annotated[float, Field(ge=0.01, le=100)] = 2.0
     """Between those places, metres per second."""
-    longest_s: Positive = 240.0
+    longest_s: Annotated[float, Field(gt=0, le=1e6)] = 240.0
     """No new place is flown to after this time, seconds."""
-    resolution_m: Positive = 0.2
+    resolution_m: Annotated[float, Field(ge=0.01, le=10)] = 0.2
     """Edge of a voxel of the map that is made, metres."""
 
 
@@ -91,6 +92,9 @@ class PerceptionSpec(Spec):
     anywhere), or that of a plug-in; `--perception` overrides it."""
     namers: Several[Name] = ()
     """With `segments`: who names what it finds, e.g. `[geometry, ocr, vision]`; default: by geometry."""
+    calibration: Words | None = None
+    """With `segments`: file of confidences of the namers, as `mintpilot bench perception --calibrate` writes it;
+    relative to the mission file."""
 
 
 class GoalSpec(Spec):
@@ -110,7 +114,7 @@ class GoalSpec(Spec):
     """Id of one room of the world: its viewpoint."""
     position_m: Place | None = None
     """A fixed place."""
-    dwell_s: NotNegative = 2.0
+    dwell_s: Seconds = 2.0
     """How long the drone stays there, seconds."""
     price_s: NotNegative | None = None
     """What leaving it undone costs, seconds of flight; default: `asking.failure_price_s`."""
@@ -165,8 +169,8 @@ class OperatorSpec(Spec):
     """Probability of answering that it does not know."""
     silence: Probability = 0.0
     """Probability of not answering."""
-    latency_s: NotNegative = 0.0
-    """Time taken for an answer, seconds, on the mission's clock."""
+    latency_s: NotNegative | Seconds = 0.0
+    """Time taken for an answer, seconds, on the mission's clock; `2..8`: drawn evenly between the two."""
 
 
 class MissionFile(Spec):

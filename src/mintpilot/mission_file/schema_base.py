@@ -40,9 +40,15 @@ Several: TypeAlias = Annotated[tuple[T, ...], BeforeValidator(_as_tuple)]
 """A list in the file."""
 Probability: TypeAlias = Annotated[float, Field(ge=0, le=1)]
 Positive: TypeAlias = Annotated[float, Field(gt=0)]
+Seconds: TypeAlias = Annotated[float, Field(ge=0, le=1e6)]
+"""Up to eleven days."""
+Metres: TypeAlias = Annotated[float, Field(ge=0, le=1e3)]
+"""Of a vehicle or a distance kept from something."""
 NotNegative: TypeAlias = Annotated[float, Field(ge=0)]
 Name: TypeAlias = Annotated[str, Field(min_length=1, max_length=100, pattern=r"^[A-Za-z0-9][A-Za-z0-9_.-]*$")]
 """Letters, digits, ``-``, ``_`` and ``.``: safe in file names, reports and answers."""
+Seconds: TypeAlias = Annotated[str, Field(pattern=r"^\d+(\.\d+)?(\.\.\d+(\.\d+)?)?$")]
+"""``5``, or ``2..8``: a time, or two bounds between which it is drawn evenly, seconds."""
 Words: TypeAlias = Annotated[str, Field(min_length=1, max_length=1000)]
 Point3: TypeAlias = Annotated[tuple[float, float, float], BeforeValidator(_as_tuple)]
 """``[x, y, z]`` in metres."""

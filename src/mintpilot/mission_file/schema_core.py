@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from mintpilot.core.errors import MissionError
 from mintpilot.core.gap import CorrelationGroup
 from mintpilot.core.geometry import Box, Vec3
-from mintpilot.core.mission import AskingSettings, CriticalityRule, Mission, ReturnRule, SurveySettings
+from mintpilot.core.mission import AskingSettings, CriticalityRule, Mission, ReturnRule, SurveySettings, WhileWaiting
 from mintpilot.core.plan import VehicleLimits
 from mintpilot.core.task import Action, Reference, SubGoal, Task
 from mintpilot.mission_file.geodetic_places import georeference_of
@@ -55,7 +55,9 @@ def limits_of(file: MissionFile) -> VehicleLimits:
 def asking_of(file: MissionFile) -> AskingSettings:
     """Thresholds and bounds."""
     values = file.asking.model_dump(exclude={"strategy_arguments"})
-    return AskingSettings(**{**values, "rule": CriticalityRule(values["rule"])})
+    return AskingSettings(
+        **{**values, "rule": CriticalityRule(values["rule"]), "while_waiting": WhileWaiting(values["while_waiting"])}
+    )
 
 
 def correlations_of(file: MissionFile) -> tuple[CorrelationGroup, ...]:

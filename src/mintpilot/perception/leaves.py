@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 
 import numpy as np
-from scipy.ndimage import binary_closing, binary_opening, label
+from scipy.ndimage import binary_closing, binary_opening, gaussian_filter, label, sobel
 
 from mintpilot.core.geometry import Bools, Floats
 from mintpilot.core.observation import Attribute, Detection
@@ -14,7 +14,7 @@ from mintpilot.perception.bodies import Body, BodyKind, Scene
 from mintpilot.perception.boxes import box_around, pixel_box
 from mintpilot.perception.colours import colour_word
 from mintpilot.perception.settings import PerceptionSettings
-from mintpilot.perception.view import View, as_floats
+from mintpilot.perception.view import View, as_floats, mean_around
 
 WIDTH_M, HEIGHT_M = (0.6, 1.35), (1.8, 2.3)
 """Leaves of doors."""
@@ -29,42 +29,64 @@ RELIEF_M = 0.02
 DIFFERENT = 0.16
 """A leaf's colour differs from its wall's median by at least this share of the full range in one channel."""
 STRIP_M = 0.25
+AVERAGED = 5
+"""Relief is averaged over a square of so many pixels."""
+LEAST_SHARE, MOST_SHARE = 0.004, 0.4
+"""A leaf has at least, and at most, these shares of the picture."""
+LINE, LINE_NOISE = 2.5, 4.0
+"""Where the picture changes by more grey levels a pixel, and by more than this many times the usual, is a line."""
+SURE, LIKELY = 0.92, 0.75
+"""Score of a leaf with wall to both sides, and of another one."""
 
 
 def find_leaves(view: View, scene: Scene, index: int, settings: PerceptionSettings) -> list[Detection]:
     """Shut doors in the walls of a view. Each wall's outliers in colour, and in relief, are held against a door."""
     found: list[Detection] = []
-    for wall in scene.bodies:
-        if wall.kind is not BodyKind.WALL or abs(float(wall.patch.normal[2])) > 0.2:
-            continue
-        for patch in _outliers(view, scene, wall):
-            leaf = _as_leaf(view, scene, wall, patch, index, settings)
+    walls = [b for b in scene.bodies if b.kind is BodyKind.WALL and abs(float(b.patch.normal[2])) <= 0.2]
+    lines = _lines(view) if walls else None
+    for wall in walls:
+        assert lines is not None
+        for patch, by_outline in _outliers(view, scene, wall, lines):
+            leaf = _as_leaf(view, scene, wall, patch, by_outline, index, settings)
             if leaf is not None and not any(_same(leaf, other) for other in found):
                 found.append(leaf)
     return found
 
 
-def _outliers(view: View, scene: Scene, wall: Body) -> Iterator[Bools]:
-    """Patches of another colour than the wall, or set back from it, in or next to its plane."""
+def _outliers(view: View, scene: Scene, wall: Body, lines: Bools) -> Iterator[tuple[Bools, bool]]:
+    """Patches in or next to a wall's plane: of another colour, set back or standing out; or, True, outlined."""
     points = scene.surfaces.points_m
     off = points @ wall.patch.normal.astype(np.float32) - np.float32(wall.patch.offset_m)
-    noise = 2.0 * view.sigma_m
-    close = view.valid & (np.abs(off) < 0.2 + noise)
+    close = view.valid & (np.abs(off) < 0.2 + 2.0 * view.sigma_m)
+    if not close.any():
+        return
     rgb = view.frame.rgb.astype(np.float32) / 255
     usual = np.median(rgb[wall.mask], axis=0)
     coloured = close & (np.abs(rgb - usual).max(axis=-1) > DIFFERENT)
-    relief = close & (np.abs(off) > RELIEF_M + noise)
-    for mask in (coloured, relief):
-        clean = binary_opening(binary_closing(mask, iterations=2), iterations=2)
+    level = mean_around(off.astype(np.float32), close, AVERAGED)
+    relief = close & (np.abs(level) > RELIEF_M + 2.0 * view.sigma_m / AVERAGED)
+    outlined = close & ~lines
+    for mask, closing in ((coloured, 2), (relief, 2), (outlined, 0)):
+        filled = binary_closing(mask, iterations=closing) if closing else mask
+        clean = binary_opening(filled, iterations=2)
         labels, count = label(clean & view.valid)
         sizes = np.bincount(labels.ravel(), minlength=count + 1)
-        for number in np.flatnonzero(sizes > 0.004 * mask.size):
+        for number in np.flatnonzero((sizes > LEAST_SHARE * mask.size) & (sizes < MOST_SHARE * mask.size)):
             if number:
-                yield labels == number
+                yield labels == number, mask is outlined
+
+
+def _lines(view: View) -> Bools:
+    """Pixels at which the picture changes: outlines of leaves and frames, whatever their colours."""
+    change = np.zeros(view.valid.shape, np.float32)
+    for channel in range(3):
+        smooth = gaussian_filter(view.frame.rgb[..., channel].astype(np.float32), 0.7)
+        np.maximum(change, np.hypot(sobel(smooth, 0), sobel(smooth, 1)) / 8, out=change)
+    return np.asarray(change > max(LINE, LINE_NOISE * float(np.median(change))), bool)
 
 
 def _as_leaf(
-    view: View, scene: Scene, wall: Body, patch: Bools, index: int, settings: PerceptionSettings
+    view: View, scene: Scene, wall: Body, patch: Bools, by_outline: bool, index: int, settings: PerceptionSettings
 ) -> Detection | None:
     points = as_floats(scene.surfaces.points_m[patch])
     normal = wall.patch.normal
@@ -78,12 +100,13 @@ def _as_leaf(
         return None
     if _filled(points @ along, points[:, 2]) < FILLS or _flat(points) > 0.02 + float(np.median(view.sigma_m[patch])):
         return None
-    if _beside(scene, wall, points, along, left, right) < BESIDE:
-        return None
+    sides = _beside(scene, wall, points, along, left, right)
+    if max(sides) < BESIDE or (by_outline and (min(sides) < BESIDE or pixels[1] < 2)):
+        return None  # what is nothing but outlined must have wall to both sides, and end below the picture's edge
     colour = colour_word(view.hue[patch], view.saturation[patch], view.value[patch])
     return Detection(
         label="door",
-        score=0.75,
+        score=SURE if min(sides) >= BESIDE and pixels[1] >= 2 else LIKELY,
         box_m=box_around(points),
         attributes=(Attribute(name="colour", value=colour),),
         pixels=pixels,
@@ -107,8 +130,8 @@ def _flat(points: Floats) -> float:
     return float(off[off <= np.percentile(off, 90)].std())
 
 
-def _beside(scene: Scene, wall: Body, points: Floats, along: Floats, left: float, right: float) -> float:
-    """Share of the heights of a leaf at which the wall is seen right beside it, the better side of the two."""
+def _beside(scene: Scene, wall: Body, points: Floats, along: Floats, left: float, right: float) -> list[float]:
+    """Share of the heights of a leaf at which the wall is seen right beside it, to either side."""
     own = as_floats(scene.surfaces.points_m[wall.mask])
     across, up = own @ along, own[:, 2]
     low, high = float(points[:, 2].min()), float(points[:, 2].max())
@@ -117,7 +140,7 @@ def _beside(scene: Scene, wall: Body, points: Floats, along: Floats, left: float
     for near in ((across > left - STRIP_M) & (across < left), (across > right) & (across < right + STRIP_M)):
         inside = near & (rows >= 0) & (rows < 10)
         sides.append(len(np.unique(rows[inside])) / 10)
-    return max(sides)
+    return sides
 
 
 def _same(a: Detection, b: Detection) -> bool:

@@ -12,6 +12,7 @@ from mintpilot.core.observation import OBJECT, Attribute, Detection, Frame, Name
 from mintpilot.core.ports import Namer, Perception
 from mintpilot.perception.bodies import Body, BodyKind, Scene, bodies_of
 from mintpilot.perception.boxes import box_around, pixel_box, touches_border
+from mintpilot.perception.calibration import CalibratedNamer, shipped_calibration
 from mintpilot.perception.colours import colour_words, size_word
 from mintpilot.perception.geometry_namer import GeometryNamer, fused
 from mintpilot.perception.hazards import find_hazards
@@ -46,7 +47,7 @@ class SegmentPerception(Perception):
 
     def __init__(self, settings: PerceptionSettings | None = None, *, namers: Sequence[Namer] | None = None) -> None:
         self._settings = settings or PerceptionSettings()
-        self._namers = tuple(namers) if namers is not None else (GeometryNamer(),)
+        self._namers = tuple(namers) if namers is not None else (_by_geometry(),)
         self._remarks: list[str] = []
 
     def take_remarks(self) -> tuple[str, ...]:
@@ -80,6 +81,11 @@ class SegmentPerception(Perception):
         except DeviceError as error:
             self._remarks.append(str(error))
             return ((),) * len(segments)
+
+
+def _by_geometry() -> Namer:
+    ours = shipped_calibration()
+    return CalibratedNamer(GeometryNamer(), ours.namers.get("geometry", {}), only_lowers=ours.only_lowers)
 
 
 def segment_of(view: View, scene: Scene, body: Body, settings: PerceptionSettings) -> Segment | None:

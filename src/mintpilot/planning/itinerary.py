@@ -70,6 +70,7 @@ class Itinerary:
         values: Mapping[str, str],
         *,
         homeward: int = 0,
+        home_s: float = 0.0,
     ) -> Plan:
         """A route through these stops as a plan in metres and seconds, which relies on nothing yet.
 
@@ -79,6 +80,7 @@ class Itinerary:
             left: those that are not, though they are needed or may be.
             values: of the target gaps.
             homeward: bit set of the regions that the way home enters.
+            home_s: flight time of the way home.
         """
         cruise = self.problem.limits.cruise_mps
         done = {stop.id for stop in stops}
@@ -100,6 +102,7 @@ class Itinerary:
             legs=tuple(legs),
             cost_s=float(sum(leg.duration_s for leg in legs)),
             relies_on=frozenset(),
+            home_s=home_s,
             enters=frozenset(g.id for r, g in enumerate(self.terrain.gaps) if (route.mask | homeward) >> r & 1),
             binds=tuple(sorted((t, v) for t, v in values.items() if any(s.gap == t for s in stops))),
             skips=frozenset(s.gap for s in self.optional if s.id not in looked_at),

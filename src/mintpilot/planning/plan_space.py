@@ -177,4 +177,6 @@ class GridPlanSpace(PlanSpace):
         if best is None:
             return None
         _, found, values = best
-        return self.itinerary.plan(found.route, found.stops, found.left, values, homeward=found.homeward)
+        return self.itinerary.plan(
+            found.route, found.stops, found.left, values, homeward=found.homeward, home_s=found.home_s
+        )

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from mintpilot.core.gap import NOWHERE
 from mintpilot.core.geometry import Floats
 from mintpilot.core.plan import LeftUndone, Shortage, Stop
 from mintpilot.core.task import Action
@@ -34,6 +35,8 @@ class Selection:
     """Their prices, those of optional stops by their chance, seconds."""
     homeward: int = 0
     """Bit set of the regions that the way home enters."""
+    home_s: float = 0.0
+    """Flight time of the way home, seconds."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -118,19 +121,23 @@ class Selector:
             return None
         numbers, route, reasons = made
         done = {found.stops[i].id for i in numbers}
+        homeward, home_s = self._homeward(found, numbers, route, blocked, uncertain)
         left = tuple(reasons.get(stop.id) or self._unreachable(stop, values) for stop in wanted if stop.id not in done)
         return Selection(
             stops=tuple(found.stops[i] for i in numbers),
             route=route,
             left=left,
             left_s=float(sum(one.stop.price_s * one.stop.chance for one in left)),
-            homeward=self._homeward(found, numbers, route, blocked, uncertain),
+            homeward=homeward,
+            home_s=home_s,
         )
 
-    def _homeward(self, found: _Reachable, numbers: Sequence[int], route: Route, blocked: int, uncertain: int) -> int:
-        """The regions that the way home enters: as few uncertain ones as the battery allows."""
+    def _homeward(
+        self, found: _Reachable, numbers: Sequence[int], route: Route, blocked: int, uncertain: int
+    ) -> tuple[int, float]:
+        """The regions that the way home enters, as few uncertain ones as the battery allows; and its seconds."""
         if self._itinerary.problem.home_m is None or self._itinerary.home is None or not route.order:
-            return 0
+            return 0, 0.0
         left_s = self.battery_s - self._route_s(found, numbers, route)
         last = found.places[numbers[route.order[-1]]]
         ways = [
@@ -139,7 +146,10 @@ class Selector:
             if not way.mask & blocked and way.cost * self._itinerary.edge_s <= left_s + TOLERANCE
         ]
         rank = lambda way: ((way.mask & uncertain).bit_count(), round(way.cost, 9), way.mask)  # noqa: E731
-        return min(ways, key=rank).mask if ways else 0
+        if not ways:
+            return 0, 0.0
+        way = min(ways, key=rank)
+        return way.mask, way.cost * self._itinerary.edge_s
 
     def _reachable(self, wanted: Sequence[Stop], values: Mapping[str, str], blocked: int) -> _Reachable:
         here = self._itinerary.start
@@ -246,6 +256,8 @@ class Selector:
         resource = Shortage.WAY
         if values.get(stop.gap) == "":
             resource = Shortage.ANSWER
+        elif values.get(stop.gap) in NOWHERE:
+            resource = Shortage.UNSEEN
         elif _picked_for(stop, self._itinerary.ordered) is not None and self._itinerary.place(stop, values):
             resource = Shortage.THING
         return LeftUndone(stop=stop, resource=resource)

@@ -22,6 +22,7 @@ _BECAUSE: Final = {
     StopReason.BUDGET: "All questions that are allowed have been asked.",
     StopReason.SILENCE: "The operator does not answer.",
     StopReason.INFEASIBLE: "Nothing can be flown under anything that is still possible.",
+    StopReason.WAITING: "Waiting for an answer may lose more than it gives: the battery runs meanwhile.",
     StopReason.NEVER_ASKS: "This method does not ask.",
     StopReason.LIMIT: "A bound on the work was reached.",
 }

@@ -34,6 +34,7 @@ from mintpilot.recording.record import (
     RoundRecord,
     SeenRecord,
     ValueRecord,
+    WaitingRecord,
 )
 from mintpilot.recording.tree_data import Told, class_records, tree_record
 from mintpilot.recording.words import say, say_evidence, say_query
@@ -78,6 +79,7 @@ def build_record(history: History, *, run_dir: str = "", unfinished: str = "") -
         certificate=_certificate(certificate) if certificate else None,
         achieved=_achieved(ended.verdict) if ended else (),
         left=_left(ended.verdict) if ended else (),
+        waiting=_waiting(ended.verdict) if ended else None,
         flight=flight,
         survey=flight_record(survey_legs) if survey_legs else None,
         seen=_seen(history.map) if history.map else (),
@@ -105,6 +107,10 @@ def versions() -> dict[str, str]:
 
 def _achieved(verdict: Verdict) -> tuple[AchievedRecord, ...]:
     return tuple(AchievedRecord(n=one.n, text=one.text, at_s=one.at_s) for one in verdict.achieved)
+
+
+def _waiting(verdict: Verdict) -> WaitingRecord:
+    return WaitingRecord(delay_s=verdict.waiting.delay_s, hidden_s=verdict.waiting.hidden_s)
 
 
 def _left(verdict: Verdict) -> tuple[LeftRecord, ...]:

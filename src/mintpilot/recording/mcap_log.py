@@ -1,7 +1,8 @@
 """``flight.mcap``: the flight for viewers such as Foxglove, written from the same events as the lossless log.
 
 Unchunked and unbuffered: what was written is kept whatever happens to the program; a file without its footer is mended
-by ``mintpilot log recover``. Times are the mission's clock, counted from when the recording began.
+by ``mintpilot log recover``. What a full disk does not take is lost whole: the file ends with its last whole record,
+and the numbers of a topic's messages have a gap. Times are the mission's clock, counted from when the recording began.
 """
 
 from __future__ import annotations
@@ -72,12 +73,17 @@ class McapRecorder(Recorder):
         self._begun_ns = int(clock() * 1e9)
         self._mission_s = 0.0
         self._channels: dict[str, int] = {}
+        self._lossy = False
         self._counts: dict[str, int] = {}
         self._next_picture_s = 0.0
         self._closed = False
 
     def record(self, event: Event) -> None:
-        """Writes what viewers show of the event. Raises `OSError` when the disk does not take it."""
+        """Writes what viewers show of the event.
+
+        Raises:
+            OSError: the disk does not take it. The file is as it was before, and the next event may be written.
+        """
         match event:
             case Stepped():
                 self._step(event)
@@ -108,9 +114,23 @@ class McapRecorder(Recorder):
             return
         self._closed = True
         try:
-            self._writer.finish()  # type: ignore[no-untyped-call]
+            self._file.whole(self._finish)
         finally:
             self._file.close()
+
+    def _finish(self) -> None:
+        if not self._lossy:
+            self._writer.finish()  # type: ignore[no-untyped-call]
+            return
+        from mcap.data_stream import RecordBuilder
+        from mcap.records import DataEnd, Footer
+        from mcap.writer import MCAP0_MAGIC
+
+        # the writer's summary would count what was lost: readers do without one
+        end = RecordBuilder()
+        DataEnd(data_section_crc=0).write(end)
+        Footer(summary_start=0, summary_offset_start=0, summary_crc=0).write(end)
+        self._file.write(end.end() + MCAP0_MAGIC)  # type: ignore[no-untyped-call]
 
     def _told(self, event: MissionStarted | Deliberated | Asked | MissionEnded) -> None:
         match event:
@@ -165,28 +185,42 @@ class McapRecorder(Recorder):
         return self._begun_ns + int(self._mission_s * 1e9)
 
     def _proto(self, topic: str, message: Any) -> None:
-        if topic not in self._channels:
-            name = message.DESCRIPTOR.full_name
-            schema = self._writer.register_schema(name, "protobuf", scene.descriptors_of(message))
-            self._channels[topic] = self._writer.register_channel(topic, "protobuf", schema)
-        self._write(topic, message.SerializeToString())
+        schema = lambda: (message.DESCRIPTOR.full_name, "protobuf", scene.descriptors_of(message))  # noqa: E731
+        self._write(topic, message.SerializeToString(), "protobuf", schema)
 
     def _json(self, topic: str, fields: dict[str, JsonValue]) -> None:
-        if topic not in self._channels:
-            schema = self._writer.register_schema(f"mintpilot{topic.replace('/', '.')}", "jsonschema", _JSON_SCHEMA)
-            self._channels[topic] = self._writer.register_channel(topic, "json", schema)
-        self._write(topic, json.dumps(fields, ensure_ascii=False).encode())
+        name = f"mintpilot{topic.replace('/', '.')}"
+        data = json.dumps(fields, ensure_ascii=False).encode()
+        self._write(topic, data, "json", lambda: (name, "jsonschema", _JSON_SCHEMA))
 
-    def _write(self, topic: str, data: bytes) -> None:
+    def _write(self, topic: str, data: bytes, encoding: str, schema: Callable[[], tuple[str, str, bytes]]) -> None:
+        """One message; the first of its topic goes to the disk in one piece with schema and channel.
+
+        Args:
+            topic: its name.
+            data: the message, encoded.
+            encoding: how messages of the topic are encoded.
+            schema: its name, encoding and text.
+        """
         self._counts[topic] = self._counts.get(topic, 0) + 1
+        known = self._channels.get(topic)
+        if known is None:
+            channel = self._writer.register_channel(topic, encoding, self._writer.register_schema(*schema()))
+        else:
+            channel = known
         stamp = self._stamp()
-        self._writer.add_message(
-            self._channels[topic], log_time=stamp, data=data, publish_time=stamp, sequence=self._counts[topic]
-        )
+        try:
+            self._writer.add_message(
+                channel, log_time=stamp, data=data, publish_time=stamp, sequence=self._counts[topic]
+            )
+        except BaseException:  # Ctrl-C as well: a channel counts only where its registration is in the file
+            self._lossy = True
+            raise
+        self._channels[topic] = channel
 
 
 class _WriteThrough:
-    """A file whose bytes are in the operating system's hands when `write` returns.
+    """A file whose bytes are in the operating system's hands when `write` returns; what fails leaves nothing behind.
 
     The writer wraps raw files in a buffer of its own, which a killed program would take with it.
     """
@@ -196,11 +230,25 @@ class _WriteThrough:
         self._size = 0
 
     def write(self, data: bytes) -> int:
-        rest = memoryview(data)
-        while rest:
-            done = os.write(self._descriptor, rest)
-            self._size, rest = self._size + done, rest[done:]
-        return len(data)
+        rest, done = memoryview(data), 0
+        try:
+            while done < len(data):
+                done += os.pwrite(self._descriptor, rest[done:], self._size + done)
+        except BaseException:
+            os.ftruncate(self._descriptor, self._size)
+            raise
+        self._size += done
+        return done
+
+    def whole(self, write: Callable[[], None]) -> None:
+        """Several writes, all of them or none."""
+        size = self._size
+        try:
+            write()
+        except BaseException:
+            self._size = size
+            os.ftruncate(self._descriptor, size)
+            raise
 
     def tell(self) -> int:
         return self._size

@@ -257,6 +257,15 @@ class AchievedRecord(Part):
     """When, seconds since the task began."""
 
 
+class WaitingRecord(Part):
+    """What waiting for answers took."""
+
+    delay_s: Figure
+    """From questions shown to their answers, or to the end of waiting."""
+    hidden_s: Figure
+    """Of that, what the drone flew meanwhile of what had to be flown anyway, by its plans."""
+
+
 class LeftRecord(Part):
     """A stop that was not done."""
 
@@ -303,6 +312,8 @@ class MissionRecord(Part):
     """What was done, in order."""
     left: tuple[LeftRecord, ...] = ()
     """What was to be done and was not."""
+    waiting: WaitingRecord | None = None
+    """What waiting for answers took; null in older records."""
     flight: FlightRecord
     survey: FlightRecord | None
     seen: tuple[SeenRecord, ...]

@@ -79,6 +79,8 @@ class RunFolder(Recorder):
         self._record: MissionRecord | None = None
         if (path / EVENTS_FILE).exists():
             raise RecordError(f"run folder '{path}' holds a run already: give another one, or move it away")
+        if path.is_dir() and any(path.iterdir()):
+            raise RecordError(f"folder '{path}' is not empty and holds no run: give a new one for the run")
         try:
             (path / "frames").mkdir(parents=True, exist_ok=True)
             if config is not None:

@@ -3,7 +3,15 @@
 from __future__ import annotations
 
 from mintpilot.core.query import Reply
-from mintpilot.recording.record import AchievedRecord, Figure, FlightRecord, LeftRecord, MissionRecord, Part
+from mintpilot.recording.record import (
+    AchievedRecord,
+    Figure,
+    FlightRecord,
+    LeftRecord,
+    MissionRecord,
+    Part,
+    WaitingRecord,
+)
 
 
 class QuestionSummary(Part):
@@ -42,6 +50,7 @@ class RunSummary(Part):
     gaps: tuple[GapSummary, ...]
     achieved: tuple[AchievedRecord, ...]
     left: tuple[LeftRecord, ...]
+    waiting: WaitingRecord | None
     flight: FlightRecord
     timings_s: dict[str, float]
     seed: int | None
@@ -62,6 +71,7 @@ def summary(record: MissionRecord) -> RunSummary:
         gaps=tuple(GapSummary(**{name: getattr(g, name) for name in GapSummary.model_fields}) for g in record.gaps),
         achieved=record.achieved,
         left=record.left,
+        waiting=record.waiting,
         flight=record.flight,
         timings_s=record.timings_s,
         seed=record.seed,

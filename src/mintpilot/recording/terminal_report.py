@@ -117,6 +117,9 @@ def _flown(record: MissionRecord) -> RenderableType:
     lines: list[RenderableType] = [table]
     if timings:
         lines.append(Text(f"Computing and waiting: {timings}", "dim"))
+    if record.waiting is not None and record.waiting.delay_s:
+        waited, hidden = number(record.waiting.delay_s, "s"), number(record.waiting.hidden_s, "s")
+        lines.append(_plain(f"waited {waited} for answers, {hidden} of it hidden by flying on meanwhile"))
     lines.extend(_plain(f"done after {number(one.at_s, 's')}: {one.text}") for one in record.achieved)
     lines.extend(_plain(f"left undone: {one.text} ({one.reason})", "yellow") for one in record.left)
     lines.extend(_plain(f"! {notice.text}", "yellow") for notice in record.notices)

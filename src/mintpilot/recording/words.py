@@ -40,6 +40,8 @@ def say(gap: KnowledgeGap, values: Iterable[str]) -> str:
     wanted = [value for value in gap.values if value in set(values)]
     if gap.kind is GapKind.OBSTACLE and len(wanted) == 1 and wanted[0] in (PASSABLE, BLOCKED):
         return f"{gap.description} {'can' if wanted[0] == PASSABLE else 'cannot'} be flown through"
+    if gap.is_thing and len(wanted) == 1:
+        return f"{gap.description} is {'a person' if wanted[0] == PRESENT else 'nobody'}"
     if gap.kind is GapKind.PRESENCE and len(wanted) == 1:
         return f"{'somebody' if wanted[0] == PRESENT else 'nobody'} is in {gap.description}"
     if gap.kind is GapKind.TARGET:

@@ -11,7 +11,7 @@ from typing import Any, Final
 import numpy as np
 
 from mintpilot.core.errors import DeviceError, MapError
-from mintpilot.core.observation import CameraModel, RawFrame
+from mintpilot.core.observation import CameraModel, Frame, RawFrame
 from mintpilot.core.ports import FrameSource, SourceOptions
 from mintpilot.simulation.render import SceneRenderer
 from mintpilot.simulation.scene import Scene
@@ -44,10 +44,7 @@ class PictureServer:
         client, _ = self.listener.accept()
         with client:
             client.settimeout(TIMEOUT_S)
-            if self._renderer is None:
-                width, height = SIZE
-                self._renderer = SceneRenderer(self._model, self._scene, seed=0, width=width, height=height)
-            frame = self._renderer.capture(data, float(data.time))
+            frame = self.draw(data)
             lens = frame.camera
             head = json.dumps(
                 {
@@ -61,6 +58,13 @@ class PictureServer:
                 client.sendall(LENGTH.pack(len(head)) + head + frame.rgb.tobytes() + depth)
             except OSError:
                 return
+
+    def draw(self, data: Any) -> Frame:
+        """The picture of now. The first one takes seconds: whoever may not wait draws one before."""
+        if self._renderer is None:
+            width, height = SIZE
+            self._renderer = SceneRenderer(self._model, self._scene, seed=0, width=width, height=height)
+        return self._renderer.capture(data, float(data.time))
 
     def close(self) -> None:
         """Frees the port. Safe to call again."""

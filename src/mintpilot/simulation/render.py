@@ -80,6 +80,25 @@ class SceneRenderer:
         lens = CameraModel(width=width, height=height, fx=focal, fy=focal, cx=width / 2, cy=height / 2)
         return Frame(time_s=time_s, rgb=rgb, depth_m=returned, camera=lens, world_from_camera=pose)
 
+    def geoms_seen(self, data: Any, camera: str) -> NDArray[np.int32]:
+        """Index of the geom that each pixel of the drone's picture shows (height, width); -1 for none.
+
+        Raises:
+            UnknownNameError: the model has no camera of that name.
+        """
+        flags, mj, (width, height) = self._scene.flags, self._mujoco, self._size
+        flags[mj.mjtRndFlag.mjRND_SEGMENT] = flags[mj.mjtRndFlag.mjRND_IDCOLOR] = True
+        try:
+            rgb, _ = self._draw(data, camera, width, height, shadows=False)
+        finally:
+            flags[mj.mjtRndFlag.mjRND_SEGMENT] = flags[mj.mjtRndFlag.mjRND_IDCOLOR] = False
+        numbers = rgb.astype(np.int32) @ np.array([1, 256, 65536], np.int32)
+        geoms = np.full(self._scene.ngeom + 1, -1, np.int32)
+        for i in range(self._scene.ngeom):
+            if self._scene.geoms[i].objtype == mj.mjtObj.mjOBJ_GEOM:
+                geoms[self._scene.geoms[i].segid + 1] = self._scene.geoms[i].objid
+        return geoms[np.where(numbers < len(geoms), numbers, 0)]
+
     def picture(
         self, data: Any, camera: str = "overview", width: int = 960, height: int = 540, *, time_s: float = 0.0
     ) -> NDArray[np.uint8]:

@@ -7,13 +7,16 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from mintpilot.core.gap import ABSENT, BLOCKED, PASSABLE, PRESENT, Candidate, GapKind, KnowledgeGap
+from mintpilot.core.gap import ABSENT, BLOCKED, NONE_OF_THEM, PASSABLE, PRESENT, Candidate, GapKind, KnowledgeGap
 from mintpilot.core.geometry import Box, Vec3
 from mintpilot.core.ports import TruthOracle
 from mintpilot.simulation.scene import Scene
 
 TOLERANCE_M = 1.5
 """What the drone speaks of lies at most this far from the thing itself; otherwise nothing is there."""
+
+BODY_M = 1.0
+"""What is taken for a person is one if somebody's middle is nearer on the ground, metres."""
 
 
 def distance_m(point_m: Vec3, box: Box) -> float:
@@ -27,9 +30,9 @@ class SceneTruth(TruthOracle):
 
     * Obstacle gap: the nearest cloud says whether it is toxic; without a cloud nearby, a solid or a shut door there
       means blocked.
-    * Presence gap: the nearest closed room says whether somebody is inside.
+    * Presence gap: the nearest closed room says whether somebody is inside; of a thing, whether somebody is there.
     * Target gap: the candidate at the first of `Scene.goal_objects` that is among the candidates; without one, the
-      candidate at a person who must be found.
+      candidate at a person who must be found; where the phrase may mean none of them, and none is there, that.
 
     Args:
         scene: the world.
@@ -46,7 +49,7 @@ class SceneTruth(TruthOracle):
             case GapKind.OBSTACLE:
                 value = self._passable(gap.position_m)
             case GapKind.PRESENCE:
-                value = self._occupied(gap.position_m)
+                value = self._is_somebody(gap.position_m) if gap.is_thing else self._occupied(gap.position_m)
             case GapKind.TARGET:
                 value = self._meant(gap.candidates)
             case GapKind.VALUE | GapKind.GO:
@@ -64,6 +67,10 @@ class SceneTruth(TruthOracle):
         rooms = ((r.occupant is not None, r.door_m) for r in self._scene.rooms)
         near = self._nearest(position_m, rooms)
         return None if near is None else PRESENT if near else ABSENT
+
+    def _is_somebody(self, position_m: Vec3) -> str:
+        near = (math.dist(position_m[:2], p.position_m[:2]) < BODY_M for p in self._scene.persons)
+        return PRESENT if any(near) else ABSENT
 
     def _nearest(self, position_m: Vec3, things: Iterable[tuple[bool, Box]]) -> bool | None:
         """The flag of the nearest box within the tolerance; a tie goes to the one with the nearer middle."""
@@ -83,7 +90,7 @@ class SceneTruth(TruthOracle):
             found = [c for c in candidates if stands_for[c.id] == name]
             if found:
                 return min(found, key=lambda c: (math.dist(c.position_m, places[name]), c.id)).id
-        return None
+        return NONE_OF_THEM if wanted else None
 
     def _places(self) -> list[tuple[str, Vec3]]:
         """Middles of all things and persons."""

@@ -107,7 +107,8 @@ def _add_shell(maker: props.Maker, volume: Box) -> None:
         maker.box(Box(lo_m=(x - 0.08, y0, z1 + 0.2), hi_m=(x + 0.08, y1, top)), "beam", group=props.CEILING_GROUP)
 
 
-def _lamp_places(volume: Box) -> list[Vec3]:
+def lamp_places(volume: Box) -> list[Vec3]:
+    """Where the lamps hang, below the ceiling."""
     (x0, y0, _), (x1, y1, z1) = volume.lo_m, volume.hi_m
     return [(x0 + (x1 - x0) * i, y0 + (y1 - y0) * j, z1 + 0.18) for i in (0.25, 0.75) for j in (0.25, 0.75)]
 
@@ -115,7 +116,7 @@ def _lamp_places(volume: Box) -> list[Vec3]:
 def _add_lights(spec: Any, scene: Scene, mujoco: Any) -> None:
     """Ceiling lamps, of which one throws shadows, and the glow of each fire."""
     maker = props.Maker(mujoco=mujoco, body=spec.worldbody, prefix="lamp")
-    for i, (x, y, z) in enumerate(_lamp_places(scene.volume)):
+    for i, (x, y, z) in enumerate(lamp_places(scene.volume)):
         spec.worldbody.add_light(
             name=f"lamp:{i}",
             pos=[x, y, z - 0.1],

@@ -6,16 +6,18 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from mintpilot.core.gap import ABSENT, PRESENT, GapKind, KnowledgeGap
+from mintpilot.core.gap import ABSENT, PRESENT, GapKind, KnowledgeGap, presence_id
 from mintpilot.core.observation import OBJECT
 from mintpilot.core.semantic_map import MapObject
-from mintpilot.uncertainty.things import stands_for
+from mintpilot.uncertainty.things import Thing, stands_for
 
 PERSON = "person"
 DOUBTFUL = (0.25, 0.9)
 """Between these probabilities it is asked whether a thing is a person."""
 NOT_SEEN = 0.1
 """Probability, before anything is known of a place, that what is sought in it was not seen yet."""
+SURE_NAME = 0.95
+"""A single thing whose name is at least so likely is what a phrase means; one of a weaker name is asked about."""
 UNNAMED = 0.03
 """Probability of any one name for a thing that nobody could name."""
 
@@ -32,21 +34,31 @@ class Referents:
     """That it was not in any picture."""
 
 
+def is_doubtful_person(thing: MapObject | Thing) -> bool:
+    """Whether it is to be asked if a thing is a person."""
+    return DOUBTFUL[0] <= _person(thing) < DOUBTFUL[1]
+
+
+def _person(thing: MapObject | Thing) -> float:
+    return next((g.probability for g in thing.names if g.label == PERSON), 0.0)
+
+
 def doubtful_people(objects: Sequence[MapObject]) -> list[KnowledgeGap]:
     """One gap for each thing that may be a person: a doubtful person is asked about, never left out in silence."""
     gaps = []
     for thing in sorted(objects, key=lambda o: o.id):
-        chance = next((g.probability for g in thing.names if g.label == PERSON), 0.0)
-        if DOUBTFUL[0] <= chance < DOUBTFUL[1]:
+        chance = _person(thing)
+        if is_doubtful_person(thing):
             gaps.append(
                 KnowledgeGap(
-                    id=f"presence:{thing.id}",
+                    id=presence_id(thing.id),
                     kind=GapKind.PRESENCE,
                     subject=thing.id,
                     description=said_of(thing),
                     values=(PRESENT, ABSENT),
                     prior=(chance, 1.0 - chance),
                     position_m=thing.position_m,
+                    is_thing=True,
                 )
             )
     return gaps
@@ -66,7 +78,7 @@ def said_of(thing: MapObject) -> str:
     return " ".join(part for part in parts if part)
 
 
-def referents(label: str, fitting: Sequence[MapObject], *, unseen: float = NOT_SEEN) -> Referents:
+def referents(label: str, fitting: Sequence[MapObject | Thing], *, unseen: float = NOT_SEEN) -> Referents:
     """What a phrase may mean, by how sure the names of the things are.
 
     Each thing is what the phrase says with the probability of its name, and of those that are, each is as likely meant:
@@ -85,7 +97,7 @@ def referents(label: str, fitting: Sequence[MapObject], *, unseen: float = NOT_S
     return Referents(things=tuple(named), none_of_them=none, not_yet_seen=unseen)
 
 
-def _chance(label: str, thing: MapObject) -> float:
+def _chance(label: str, thing: MapObject | Thing) -> float:
     if not thing.names:
         if thing.label == OBJECT:
             return UNNAMED

@@ -14,7 +14,7 @@ from mintpilot.core.plan import PRICE_S, PlanningProblem, Stop, VehicleLimits
 from mintpilot.core.semantic_map import Knowledge, Region, SemanticMap
 from mintpilot.core.task import Task
 from mintpilot.uncertainty.describing import describe, place
-from mintpilot.uncertainty.gaps import obstacle_gaps, presence_gaps
+from mintpilot.uncertainty.gaps import obstacle_gaps, people_gaps, presence_gaps
 from mintpilot.uncertainty.keep_away import PREFIX
 from mintpilot.uncertainty.matching import Standpoint
 from mintpilot.uncertainty.targets import PERSON, bind
@@ -79,9 +79,12 @@ def find_gaps(
     stops = list(bound.stops)
     if task.seeks_people:
         looked_at = {site.label for stop in stops if not stop.gap for site in stop.sites}
-        more_gaps, more_stops = presence_gaps(map, things, finished=finished, looked_at=looked_at)
-        gaps += more_gaps
-        stops += more_stops
+        for more_gaps, more_stops in (
+            presence_gaps(map, things, finished=finished, looked_at=looked_at),
+            people_gaps(map, finished=finished, bound=looked_at),
+        ):
+            gaps += more_gaps
+            stops += more_stops
     return Findings(
         gaps=tuple(sorted(told_apart(gaps, map.frame.box.lo_m), key=lambda gap: gap.id)),
         stops=tuple(_on_layer(stop, map) for stop in stops),
@@ -166,8 +169,8 @@ def _weighed(
     gap = next(gap for gap in findings.gaps if gap.id == stop.gap)
     chance = belief.probability_of(gap.id, PRESENT) if belief else gap.prior[gap.values.index(PRESENT)]
     price_s = prices.usual_s if prices.people_s is None else prices.people_s
-    seek = task.step_for(0).n
-    return replace(stop, price_s=price_s, chance=chance, step=seek, text=f"look into {gap.description}")
+    seek, verb = task.step_for(0).n, "look closer at" if gap.is_thing else "look into"
+    return replace(stop, price_s=price_s, chance=chance, step=seek, text=f"{verb} {gap.description}")
 
 
 def told_apart(gaps: Sequence[KnowledgeGap], corner_m: Vec3) -> list[KnowledgeGap]:

@@ -13,6 +13,7 @@ from mintpilot.core.plan import Site, Stop
 from mintpilot.core.semantic_map import Knowledge, Region, Room, SemanticMap
 from mintpilot.core.task import Action
 from mintpilot.uncertainty.describing import place
+from mintpilot.uncertainty.doubts import doubtful_people
 from mintpilot.uncertainty.things import ROOM, Thing
 
 LOOK_REACH_M = 0.5
@@ -73,6 +74,34 @@ def presence_gaps(
     return gaps, stops
 
 
+def people_gaps(
+    map: SemanticMap, *, finished: Collection[str], bound: Collection[str]
+) -> tuple[list[KnowledgeGap], list[Stop]]:
+    """A gap and an optional stop for each thing that may be a person: it is asked about, or flown to.
+
+    Args:
+        map: what is believed of the world.
+        finished: ids of stops already fulfilled.
+        bound: ids of things that the ordered stops go to anyway.
+    """
+    gaps = [g for g in doubtful_people(map.objects) if look_id(g.subject) not in finished and g.subject not in bound]
+    return gaps, [
+        Stop(
+            id=look_id(gap.subject),
+            action=Action.GO,
+            sites=(Site(position_m=gap.position_m, value=PRESENT, label=gap.subject),),
+            gap=gap.id,
+            optional=True,
+        )
+        for gap in gaps
+    ]
+
+
+def look_id(subject: str) -> str:
+    """Id of the stop at which it is seen whether somebody is in a room, or whether a thing is somebody."""
+    return f"look:{subject}"
+
+
 def region_middle_m(map: SemanticMap, region: Region) -> Vec3:
     """Mean of the centres of a region's cells, metres."""
     cells = np.stack(np.unravel_index(region.cells, map.frame.shape), axis=1)
@@ -82,7 +111,7 @@ def region_middle_m(map: SemanticMap, region: Region) -> Vec3:
 
 def _look(room: Room) -> Stop:
     site = Site(position_m=room.viewpoint_m, reach_m=LOOK_REACH_M, value=PRESENT, label=room.id)
-    return Stop(id=f"look:{room.id}", action=Action.LOOK, sites=(site,), gap=presence_id(room.id), optional=True)
+    return Stop(id=look_id(room.id), action=Action.LOOK, sites=(site,), gap=presence_id(room.id), optional=True)
 
 
 def _two(first: float) -> tuple[float, float]:

@@ -102,6 +102,13 @@ def name_probability(label: str, thing: Thing) -> float:
     return math.fsum(g.probability for g in thing.names if stands_for(g.label, label))
 
 
+def asked_name(reference: Reference, things: Sequence[Thing]) -> str:
+    """The name that a phrase asks for: ``medicine box`` where something may be so called, else its noun alone."""
+    whole = " ".join((*(value_of(a) for a in reference.attributes if not name_of(a)), reference.label))
+    named = {g.label for t in things for g in t.names} | {t.label for t in things}
+    return whole if any(stands_for(name, whole) for name in named) else reference.label
+
+
 def _may_be(thing: Thing, label: str) -> bool:
     """Whether a thing has that name weakly: it is then one of those that are asked about."""
     return bool(thing.names) and name_probability(label, thing) >= WEAK_NAME

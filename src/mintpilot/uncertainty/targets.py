@@ -7,12 +7,13 @@ import re
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field
 
-from mintpilot.core.gap import Candidate, GapKind, KnowledgeGap, target_id
+from mintpilot.core.gap import NOWHERE, Candidate, GapKind, KnowledgeGap, target_id
 from mintpilot.core.plan import Site, Stop
 from mintpilot.core.task import Action, Reference, SubGoal, Task
 from mintpilot.uncertainty.describing import describe_apart, seen
-from mintpilot.uncertainty.gaps import LOOK_REACH_M
-from mintpilot.uncertainty.matching import Standpoint, match, name_probability
+from mintpilot.uncertainty.doubts import SURE_NAME, is_doubtful_person, referents
+from mintpilot.uncertainty.gaps import LOOK_REACH_M, look_id
+from mintpilot.uncertainty.matching import Standpoint, asked_name, match, name_probability
 from mintpilot.uncertainty.things import ROOM, Thing, middle_m, nearest_first, synonyms
 
 _REACH_M = {Action.PICK: 1.2, Action.COUNT: 2.5, Action.PHOTOGRAPH: 2.5, Action.REPORT: 2.5}
@@ -31,6 +32,8 @@ class Binding:
     view: Standpoint
     finished: Collection[str]
     """Ids of stops that are left out."""
+    asked_for: Collection[str] = ()
+    """Ids of things that are asked about by themselves: where all people are sought, those who may be none."""
     stops: list[Stop] = field(default_factory=list)
     gaps: dict[str, KnowledgeGap] = field(default_factory=dict)
     problems: list[str] = field(default_factory=list)
@@ -46,7 +49,8 @@ class Binding:
         found = self._found(reference)
         if not found:
             return
-        gap = _gap(reference, first, found, self.things, self.view) if len(found) > 1 else None
+        doubtful = reference.object_id == "" and name_probability(asked_name(reference, found), found[0]) < SURE_NAME
+        gap = _gap(reference, first, found, self.things, self.view) if len(found) > 1 or doubtful else None
         sites = tuple(_site(thing, subgoal, value=thing.id if gap else "") for thing in found)
         self.stops.append(_stop(stop_id, subgoal, sites, gap.id if gap else ""))
         if gap:
@@ -58,7 +62,12 @@ class Binding:
         Nobody in sight is no problem for who looks for anybody.
         """
         found = self._found(reference, told=not (reference.every and reference.label == PERSON))
-        left = [t for t in found if not t.searched and f"{stop_id}:{t.id}" not in self.finished]
+        left = [
+            t
+            for t in found
+            if not (t.searched or t.id in self.asked_for)
+            and not {f"{stop_id}:{t.id}", look_id(t.id)} & set(self.finished)
+        ]
         here_m = self.stops[-1].sites[0].position_m if self.stops else self.view.start_m
         for thing in nearest_first(left, here_m):
             self.stops.append(_stop(f"{stop_id}:{thing.id}", subgoal, (_site(thing, subgoal),)))
@@ -84,7 +93,8 @@ def bind(task: Task, things: Sequence[Thing], view: Standpoint, *, finished: Col
     of a sub-goal that means every match there is one stop for each (``go:1:person-2``), nearest first. A pronoun means
     what the sub-goal before it meant. The same reference used twice is one gap.
     """
-    binding = Binding(things=things, view=view, finished=finished)
+    doubtful = {t.id for t in things if task.seeks_people and is_doubtful_person(t)}
+    binding = Binding(things=things, view=view, finished=finished, asked_for=doubtful)
     numbers: dict[Reference, int] = {}
     meant: Reference | None = None
     for number, subgoal in enumerate(task.subgoals, start=1):
@@ -114,13 +124,14 @@ def _gap(
     reference: Reference, number: int, found: Sequence[Thing], things: Sequence[Thing], view: Standpoint
 ) -> KnowledgeGap:
     words = describe_apart(found, things, view.start_m)
+    values, prior = _meanings(reference, found)
     return KnowledgeGap(
         id=target_id(number, _slug(reference.phrase)),
         kind=GapKind.TARGET,
         subject=reference.phrase,
         description=reference.phrase if reference.phrase.lower().startswith("the ") else f"the {reference.phrase}",
-        values=tuple(t.id for t in found),
-        prior=_prior(reference, found),
+        values=values,
+        prior=prior,
         position_m=middle_m(t.position_m for t in found),
         candidates=tuple(
             Candidate(
@@ -135,11 +146,20 @@ def _gap(
     )
 
 
-def _prior(reference: Reference, found: Sequence[Thing]) -> tuple[float, ...]:
-    """P(g | I, V) among the things found: by how likely each one is what the phrase says; equal where that is sure."""
-    weights = [max(name_probability(reference.label, t), 1e-3) for t in found]
-    total = math.fsum(weights)
-    return tuple(weight / total for weight in weights)
+def _meanings(reference: Reference, found: Sequence[Thing]) -> tuple[tuple[str, ...], tuple[float, ...]]:
+    """P(g | I, V): the things found, equally likely where all of them are surely what the phrase says.
+
+    Else each by how sure its name is, with the values `NOWHERE`: it may be none of them, or not yet seen.
+    """
+    ids = tuple(thing.id for thing in found)
+    name = asked_name(reference, found)
+    if all(name_probability(name, thing) >= SURE_NAME for thing in found):
+        return ids, (1 / len(ids),) * len(ids)
+    meant = referents(name, found)
+    chances = dict(meant.things)
+    prior = (*(chances.get(i, 0.0) for i in ids), meant.none_of_them, meant.not_yet_seen)
+    total = math.fsum(prior)
+    return (*ids, *NOWHERE), tuple(p / total for p in prior)
 
 
 def _site(thing: Thing, subgoal: SubGoal, value: str = "") -> Site:

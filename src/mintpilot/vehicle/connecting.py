@@ -15,8 +15,9 @@ if TYPE_CHECKING:
 
 HEARD_S = 10.0
 """Longest wait for the first heartbeat, seconds."""
-OUR_COMPONENT_ID = 191
-"""On-board computer."""
+OUR_COMPONENT_ID = 190
+"""A ground station: PX4 counts the data link by the heartbeats of ground stations alone, and is not armed without one
+where its loss is acted on."""
 
 
 def connected(address: Address) -> tuple[Mavsdk, System]:

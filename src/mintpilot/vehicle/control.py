@@ -22,6 +22,8 @@ START_M = 0.5
 """A trajectory must begin at most this far from the vehicle, metres."""
 HOLD_S = 0.5
 """After this time without a sign of life from the loop the vehicle brakes and hovers, seconds."""
+LATE_S = 0.3
+"""A tick that comes so long after the one before is late, seconds."""
 END_S = 3.0
 """After this time it lands where that is known free, or returns where that clears everything mapped, seconds."""
 
@@ -39,6 +41,8 @@ def link_step(state: ControlState, event: LinkEvent) -> tuple[ControlState, tupl
             phases.did(turn, event)
         case Tick():
             elapsed_s = turn.state.now_s - state.ticked_s
+            if elapsed_s > LATE_S:
+                turn.set(late_s=turn.state.now_s)
             turn.set(ticked_s=turn.state.now_s)
             watching.take_in(turn, event.seen)
             watching.watch(turn)

@@ -52,6 +52,8 @@ class ControlState:
     now_s: float = 0.0
     ticked_s: float = 0.0
     """When time passed last."""
+    late_s: float = -math.inf
+    """When a tick came late last: the process itself was held up, and heard nothing meanwhile."""
     fed_s: float = 0.0
     """When the loop was last known to be alive."""
     seen: Seen = field(default_factory=Seen)

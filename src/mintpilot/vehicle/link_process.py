@@ -30,6 +30,8 @@ from mintpilot.vehicle.signals import Act, Changed, Command, Ended, Fed, LinkEve
 
 TICK_S = 0.05
 """Between set-points, seconds: 20 a second."""
+MOST_SAID = 100
+"""So much of the loop is taken in between two ticks."""
 CLOSING_S = 2.0
 """Longest wait for the library at the end, seconds."""
 LOST_S = 2.0
@@ -144,10 +146,10 @@ class _LinkLoop:
         return state.phase in AIRBORNE or (state.phase is Phase.RELEASED and state.seen.armed and not lost)
 
     def _listen(self, until_s: float) -> None:
-        """Takes in what the loop says, until that moment."""
-        while (left_s := until_s - time.monotonic()) > 0:
+        """Takes in what the loop says, until that moment; what is there already also where the moment is past."""
+        for _ in range(MOST_SAID):
             try:
-                said = self._channel.get(left_s)
+                said = self._channel.get(max(until_s - time.monotonic(), 0.0))
             except queue.Empty:
                 return
             now = time.monotonic()

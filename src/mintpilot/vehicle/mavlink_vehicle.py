@@ -22,7 +22,7 @@ from mintpilot.vehicle.link_process import LinkFailed, LinkSetup, Report, Snapsh
 from mintpilot.vehicle.preparing import Prepared
 from mintpilot.vehicle.signals import Brake, Changed, Ended, Settle
 
-PREPARE_S = 180.0
+PREPARE_S = 240.0
 """Longest preparation on the ground, seconds; every part of it has a shorter time-out of its own."""
 FEED_S = 0.1
 """Between signs of life, seconds."""

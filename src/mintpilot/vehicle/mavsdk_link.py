@@ -19,9 +19,10 @@ from mintpilot.vehicle.telemetry import Telemetry
 if TYPE_CHECKING:
     from mavsdk.system import System
 
-RATES_HZ = {0: 4.0, 30: 10.0, 32: 20.0, 33: 5.0, 245: 2.0, 147: 1.0, 242: 0.5, 1: 2.0, 49: 0.5}
+RATES_HZ = {0: 4.0, 30: 10.0, 32: 20.0, 33: 5.0, 245: 2.0, 147: 1.0, 242: 0.5, 1: 2.0, 49: 0.5, 230: 5.0, 193: 5.0}
 """Message id → how often it is asked for: ArduPilot sends nothing unasked. HEARTBEAT, ATTITUDE, LOCAL_POSITION_NED,
-GLOBAL_POSITION_INT, EXTENDED_SYS_STATE, BATTERY_STATUS, HOME_POSITION, SYS_STATUS, GPS_GLOBAL_ORIGIN."""
+GLOBAL_POSITION_INT, EXTENDED_SYS_STATE, BATTERY_STATUS, HOME_POSITION, SYS_STATUS, GPS_GLOBAL_ORIGIN, and how good the
+position is: ESTIMATOR_STATUS (PX4), EKF_STATUS_REPORT (ArduPilot)."""
 MESSAGES = (
     "HEARTBEAT",
     "LOCAL_POSITION_NED",
@@ -30,6 +31,8 @@ MESSAGES = (
     "BATTERY_STATUS",
     "STATUSTEXT",
     "GPS_GLOBAL_ORIGIN",
+    "ESTIMATOR_STATUS",
+    "EKF_STATUS_REPORT",
 )
 _SET_INTERVAL, _GRIPPER = 511, 211
 _RESULTS = {1: "temporarily rejected", 2: "denied", 3: "not supported", 4: "failed", 6: "cancelled"}
@@ -155,7 +158,7 @@ class MavsdkLink:
             self._command(_SET_INTERVAL, message, 1e6 / rate_hz)
 
     def _heard(self, message: Any, _: object) -> None:
-        if message.component_id == 1:
+        if message.system_id == self._system_id and message.component_id == 1:
             self.telemetry.take(message.message_name, json.loads(message.fields_json), self._clock())
 
     def _healthy(self, health: Any, _: object) -> None:

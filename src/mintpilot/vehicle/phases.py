@@ -23,7 +23,7 @@ AGAIN_S = 2.0
 CLIMB_S = 30.0
 """Longest take-off, seconds, besides that of its height at `SLOWEST_CLIMB_MPS`."""
 SLOWEST_CLIMB_MPS = 0.3
-STREAM_S = 1.0
+STREAM_S = 1.3
 """Set-points are sent for so long before the autopilot is asked to follow them, seconds."""
 ENGAGE_S = 8.0
 """For so long it is asked again, seconds."""

@@ -17,11 +17,11 @@ from mintpilot.vehicle.mavsdk_link import MavsdkLink
 from mintpilot.vehicle.modes import Autopilot
 from mintpilot.vehicle.telemetry import Telemetry
 
-POSITION_S = 45.0
-"""Longest wait for a local position, seconds."""
+POSITION_S = 90.0
+"""Longest wait for the position, seconds: ArduPilot takes half a minute from its start."""
 ORIGIN_S = 4.0
 """Longest wait for the place of the local origin on the earth, where it is of use only, seconds."""
-PAD_M = 3.0
+PAD_M = 1.0
 """So far from the mission's start the vehicle may stand by its own global position, metres."""
 
 
@@ -55,22 +55,46 @@ def prepare(
         sleep: waits that many seconds.
     """
     heard = link.telemetry
-    _wait(lambda: heard.health.local_position and heard.ned_m is not None, POSITION_S, sleep)
-    _wait(lambda: heard.origin is not None, ORIGIN_S if georeference is None else POSITION_S, sleep)
-    if georeference is not None:
-        _wait(lambda: heard.health.global_position and heard.health.home, POSITION_S, sleep)
+    _wait_for_position(heard, georeference, sleep)
     autopilot = heard.autopilot or Autopilot.PX4
     checks = [_link(autopilot), _position(heard)]
     frame = frame_of(heard, envelope, heading_rad, georeference)
     if georeference is not None:
         checks += [_global_position(heard), _pad(heard, frame, envelope)]
-    height_m = failsafes.return_height_m(autopilot, link.get_parameter)
-    returns = failsafes.may_return(envelope, height_m) and heard.health.global_position
-    checks.append(_return(envelope, height_m, returns))
-    wanted = failsafes.settings_for(autopilot, envelope, returns=returns)
+    fence = _fence(link, frame, envelope, accept=accept)  # ArduPilot is not armed with a fence that it has not got
+    checks.append(fence)
+    returns = _set_up_return(link, autopilot, envelope, checks, accept=accept)
+    wanted = failsafes.settings_for(autopilot, envelope, returns=returns, polygon=fence.ok and heard.origin is not None)
     checks += failsafes.apply(wanted, link.get_parameter, link.set_parameter, only_read=accept)
-    checks.append(_fence(link, frame, envelope))
+    if autopilot is Autopilot.ARDUPILOT:
+        checks.append(failsafes.battery_threshold(link.get_parameter))
     return Prepared(autopilot=autopilot, checks=tuple(checks), return_clear=returns)
+
+
+def _wait_for_position(heard: Telemetry, georeference: Georeference | None, sleep: Callable[[float], None]) -> None:
+    """All that is waited for has one time-out together; what is of use only, a short one of its own."""
+    placed = georeference is not None
+    _wait(
+        lambda: heard.knows_position and (not placed or (heard.knows_global and heard.origin is not None)),
+        POSITION_S,
+        sleep,
+    )
+    _wait(lambda: heard.origin is not None, 0.0 if placed else ORIGIN_S, sleep)
+
+
+def _set_up_return(
+    link: MavsdkLink, autopilot: Autopilot, envelope: SafetyEnvelope, checks: list[Check], *, accept: bool
+) -> bool:
+    """Whether the autopilot's own return clears everything mapped; else its fail-safes land."""
+    height_m = failsafes.return_height_m(autopilot, link.get_parameter)
+    returns = failsafes.may_return(envelope, height_m) and link.telemetry.health.global_position
+    if returns and height_m is not None:
+        wanted = failsafes.return_settings(autopilot, envelope, height_m)
+        found = failsafes.apply(wanted, link.get_parameter, link.set_parameter, only_read=accept)
+        returns = all(check.ok for check in found)
+        checks += found if returns else ()
+    checks.append(_return(envelope, height_m, returns))
+    return returns
 
 
 def frame_of(
@@ -127,14 +151,14 @@ def _link(autopilot: Autopilot) -> Check:
 
 
 def _position(heard: Telemetry) -> Check:
-    ok = heard.health.local_position and heard.ned_m is not None
+    ok = heard.knows_position
     value = "known" if ok else f"none within {POSITION_S:g} s"
     how = "wait for GPS or start the position source (VIO, motion capture, optical flow); see the ground station"
     return Check(check="local position", ok=ok, value=value, wanted="known", how=how)
 
 
 def _global_position(heard: Telemetry) -> Check:
-    ok = heard.health.global_position and heard.health.home and heard.origin is not None
+    ok = heard.knows_global and heard.origin is not None
     how = "wait for GPS and for the home position: the mission has a georeference"
     return Check(check="global position and home", ok=ok, value="known" if ok else "not known", wanted="known", how=how)
 
@@ -164,12 +188,14 @@ def _return(envelope: SafetyEnvelope, height_m: float | None, returns: bool) -> 
     return Check(check="return altitude", ok=True, value=value, wanted=wanted)
 
 
-def _fence(link: MavsdkLink, frame: LocalFrame, envelope: SafetyEnvelope) -> Check:
+def _fence(link: MavsdkLink, frame: LocalFrame, envelope: SafetyEnvelope, *, accept: bool) -> Check:
     origin = link.telemetry.origin
     wanted = f"the mission's volume and {failsafes.FENCE_MARGIN_M:g} m"
     if origin is None:
         value = "none: no global position; the mission's own planner keeps inside the volume"
         return Check(check="geofence", ok=not envelope.outdoors, value=value, wanted=wanted, failsafe=True)
+    if accept:
+        return Check(check="geofence", ok=False, value="as it is", wanted=wanted, failsafe=True)
     refusal = link.upload_fence(fence_corners(frame, envelope, origin))
     return Check(
         check="geofence", ok=not refusal, value=refusal or "uploaded", wanted=wanted, failsafe=True,

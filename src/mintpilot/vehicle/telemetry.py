@@ -18,6 +18,12 @@ ON_GROUND: Final = 1
 """`landed_state` of a vehicle on the ground."""
 WARNING: Final = 4
 """Severities up to this one are warnings or worse."""
+ESTIMATED: Final = 8 | 16
+"""In the flags of the estimator: a horizontal position, relative or absolute, is known ..."""
+PREDICTED: Final = 256 | 512
+"""... or will be once it flies, which counts on the ground ..."""
+GUESSED: Final = 128
+"""... and is no mere assumption."""
 RESTARTED_MS: Final = 10_000
 """A clock that goes back by more than this belongs to an autopilot that has restarted."""
 
@@ -57,6 +63,22 @@ class Telemetry:
         self._on_ground = True
         self._status = ""
         self._battery: float | None = None
+        self._estimator: int | None = None
+
+    @property
+    def knows_position(self) -> bool:
+        """Whether the autopilot knows where it is: by its estimator, or where that is silent by its sensors."""
+        if self.ned_m is None:
+            return False
+        if self._estimator is None:
+            return self.health.local_position
+        wanted = ESTIMATED if self._armed else ESTIMATED | PREDICTED
+        return bool(self._estimator & wanted) and not self._estimator & GUESSED
+
+    @property
+    def knows_global(self) -> bool:
+        """Whether the autopilot knows where it is on the earth, and where home is."""
+        return self.health.global_position and self.health.home
 
     def take(self, name: str, fields: Fields, time_s: float) -> None:
         """Takes in one message that arrived then. Fields that are missing or not finite leave all as it was."""
@@ -73,6 +95,8 @@ class Telemetry:
             case "BATTERY_STATUS":
                 left = _number(fields, "battery_remaining", -1)
                 self._battery = left / 100 if 0 <= left <= 100 else self._battery
+            case "ESTIMATOR_STATUS" | "EKF_STATUS_REPORT":
+                self._estimator = int(_number(fields, "flags", 0))
             case "STATUSTEXT" if _number(fields, "severity", 7) <= WARNING:
                 self._status = str(fields.get("text", "")).strip("\0 ")
             case "GPS_GLOBAL_ORIGIN":
@@ -93,7 +117,7 @@ class Telemetry:
             position_m=frame.from_ned(self.ned_m or (0.0, 0.0, 0.0)),
             velocity_mps=frame.velocity_from_ned(self._velocity_ned),
             yaw_rad=frame.yaw_from_ned(self._heading_rad),
-            position_known=self.health.local_position,
+            position_known=self.knows_position,
             mode=mode,
             mode_name=name,
             armed=self._armed,
@@ -105,7 +129,7 @@ class Telemetry:
 
     def _not_ready(self, georeferenced: bool) -> str:
         health = self.health
-        if not health.local_position or self.ned_m is None:
+        if not self.knows_position:
             return "it has no local position"
         if georeferenced and not health.global_position:
             return "it has no global position"

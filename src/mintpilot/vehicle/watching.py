@@ -14,6 +14,8 @@ BEATS = 3.6
 """So many heartbeats missing one after the other: the link is lost ..."""
 FASTEST_BEAT_S = 0.5
 """... but not because of a faster beat than this, seconds: packets are lost, too."""
+HELD_UP_S = 0.4
+"""For so long after it was held up itself, the process takes nothing for silent, seconds: it has to catch up first."""
 STALE_S = 0.6
 """A position older than this is none, seconds."""
 JUMP_M = 1.0
@@ -60,7 +62,7 @@ def heartbeat_limit_s(every_s: float) -> float:
 
 def _watch_link(turn: Turn) -> None:
     state = turn.state
-    if state.phase in (Phase.RELEASED, Phase.DOWN):
+    if state.phase in (Phase.RELEASED, Phase.DOWN) or state.now_s - state.late_s < HELD_UP_S:
         return
     silent_s, beat_s = state.now_s - state.seen.message_s, state.now_s - state.seen.heartbeat_s
     if silent_s > SILENT_S:

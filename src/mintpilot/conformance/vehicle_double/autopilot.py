@@ -7,12 +7,17 @@ from enum import StrEnum
 
 from mintpilot.conformance.vehicle_double.body import CLIMB_MPS, SINK_MPS, Body, Ned, Target
 from mintpilot.conformance.vehicle_double.faults import Fault
+from mintpilot.conformance.vehicle_double.fence import Fence
 from mintpilot.conformance.vehicle_double.parameters import Flavour, Parameters
 
 LANDED_S = 1.0
 """It stops its motors after having stood for so long."""
-BEFORE_OFFBOARD_S = 0.5
-"""PX4 follows set-points only if one came this short a time ago."""
+BEFORE_OFFBOARD_S = 1.0
+"""PX4 follows set-points only if they have come for so long ..."""
+BETWEEN_POINTS_S = 0.5
+"""... with no longer pause than this."""
+IDLE_S = 10.0
+"""Motors that run on the ground for so long without a take-off are stopped."""
 LOW, CRITICAL = 0.15, 0.07
 """Shares of the battery at which its fail-safes act."""
 BLIND_S = 2.0
@@ -51,10 +56,14 @@ class DoubleAutopilot:
         self.gripper = "open"
         self.battery = 1.0
         self.jump_m = 0.0
+        self.fence = Fence()
         self._endurance_s, self._position_after_s = endurance_s, position_after_s
         self._now_s = 0.0
         self._point: Target | None = None
         self._point_s = self._gcs_s = -math.inf
+        self._streaming_s = 0.0
+        self._armed_s = 0.0
+        self._climbs = False
         self._target: Target | None = None
         self._stood_s: float | None = None
         self._blind_since_s: float | None = None
@@ -89,8 +98,34 @@ class DoubleAutopilot:
             return "Arming denied: compass variance"
         if not self.knows_position:
             return "Arming denied: no position"
-        self.armed, self._stood_s = True, None
+        refusal = self._px4_refusal() if self.flavour is Flavour.PX4 else self._ardupilot_refusal()
+        if refusal:
+            return refusal
+        self.armed, self._stood_s, self._armed_s, self._climbs = True, None, self._now_s, False
         return ""
+
+    def _px4_refusal(self) -> str:
+        """A loss of the data link that is acted on must not be there from the beginning."""
+        get = self.parameters
+        lost = self._now_s - self._gcs_s > get["COM_DL_LOSS_T"]
+        return "Preflight Fail: No connection to the GCS" if get["NAV_DLL_ACT"] > 0 and lost else ""
+
+    def _ardupilot_refusal(self) -> str:
+        """A fence that counts must be there, and around it."""
+        get = self.parameters
+        if not get["FENCE_ENABLE"]:
+            return ""
+        if int(get["FENCE_TYPE"]) & 4 and not self.fence.corners_m:
+            return "Arm: Polygon fence not loaded"
+        return "" if self.fence.holds(self.body.ned_m, self._top_m) else "Arm: vehicle outside fence"
+
+    @property
+    def _top_m(self) -> float:
+        """Height of the fence, metres; 0: none counts."""
+        get = self.parameters
+        if self.flavour is Flavour.PX4:
+            return get["GF_MAX_VER_DIST"] if get["GF_ACTION"] > 0 else 0.0
+        return get["FENCE_ALT_MAX"] if get["FENCE_ENABLE"] and int(get["FENCE_TYPE"]) & 1 else 0.0
 
     def disarm(self) -> str:
         """Stops the motors; the reason why not, or nothing."""
@@ -107,13 +142,14 @@ class DoubleAutopilot:
         if self.flavour is Flavour.PX4:
             self._enter(DoubleMode.TAKE_OFF)
         n, e, _ = self.body.ned_m
-        self._point, self._point_s = None, -math.inf
+        self._point, self._point_s, self._climbs = None, -math.inf, True
         self._target = Target(ned_m=(n, e, -height_m), fastest_mps=CLIMB_MPS)
         return ""
 
     def change_mode(self, mode: DoubleMode) -> str:
         """Goes into a mode; the reason why not, or nothing."""
-        fresh = self._now_s - self._point_s <= BEFORE_OFFBOARD_S
+        fresh = self._now_s - self._point_s <= BETWEEN_POINTS_S
+        fresh = fresh and self._point_s - self._streaming_s >= BEFORE_OFFBOARD_S
         if mode is DoubleMode.FOLLOW and self.flavour is Flavour.PX4 and not fresh:
             return "no offboard signal"
         if Fault.PILOT in self.faults and mode is not DoubleMode.PILOT:
@@ -123,12 +159,19 @@ class DoubleAutopilot:
         return ""
 
     def set_point(self, point: Target) -> None:
-        """A set-point came."""
+        """A set-point came. ArduPilot takes none outside of its fence, nor before a take-off."""
+        if self.flavour is Flavour.ARDUPILOT:
+            fenced = self.parameters["FENCE_ENABLE"] and not self.fence.holds(point.ned_m, self._top_m)
+            if self.mode is not DoubleMode.FOLLOW or not self._climbs or fenced:
+                return
+        if self._now_s - self._point_s > BETWEEN_POINTS_S:
+            self._streaming_s = self._now_s
         self._point, self._point_s = point, self._now_s
 
-    def heard_ground(self, system_id: int) -> None:
-        """A heartbeat of a ground station or companion came."""
-        if self.flavour is Flavour.PX4 or system_id == int(self.parameters["MAV_GCS_SYSID"]):
+    def heard_ground(self, system_id: int, *, station: bool = True) -> None:
+        """A heartbeat came: PX4 counts those of ground stations, ArduPilot those of one system."""
+        counts = station if self.flavour is Flavour.PX4 else system_id == int(self.parameters["MAV_GCS_SYSID"])
+        if counts:
             self._gcs_s = self._now_s
 
     def step(self, now_s: float) -> None:
@@ -181,6 +224,8 @@ class DoubleAutopilot:
         return Target(ned_m=(n, e, d))
 
     def _land_when_down(self) -> None:
+        if not self.airborne and not self._climbs and self._now_s - self._armed_s > IDLE_S:
+            self.armed = False
         if self.airborne or self.mode is not DoubleMode.LAND:
             self._stood_s = None
             return
@@ -202,6 +247,10 @@ class DoubleAutopilot:
             since = self._blind_since_s = self._now_s if self._blind_since_s is None else self._blind_since_s
             if self._now_s - since > BLIND_S:
                 self._act(DoubleMode.LAND, "Failsafe: position lost, landing")
+            return
+        fenced = self.parameters["GF_ACTION" if self.flavour is Flavour.PX4 else "FENCE_ENABLE"] > 0
+        if fenced and self.mode is DoubleMode.FOLLOW and not self.fence.holds(self.body.ned_m, self._top_m):
+            self._act(DoubleMode.HOLD, "Geofence breached")
             return
         self._px4_fail_safe() if self.flavour is Flavour.PX4 else self._ardupilot_fail_safe()
 

@@ -9,10 +9,17 @@ from typing import Any
 from mintpilot.conformance.vehicle_double.autopilot import DoubleAutopilot, DoubleMode
 from mintpilot.conformance.vehicle_double.body import Target
 from mintpilot.conformance.vehicle_double.faults import Fault
+from mintpilot.conformance.vehicle_double.fence import HOME_ALTITUDE_M, fence_of
 from mintpilot.conformance.vehicle_double.parameters import Flavour
-from mintpilot.conformance.vehicle_double.speaking import HOME_ALTITUDE_M, Speaker, mode_numbered
+from mintpilot.conformance.vehicle_double.speaking import Speaker, mode_numbered
 
 Send = Callable[[Any], None]
+ANSWER_S = 0.1
+"""A command is answered after this time, seconds ..."""
+SLOW_S = {22: 0.5, 211: 1.5}
+"""... but these (take-off, gripper) are first said to be in progress, and answered after this one."""
+LOCAL_NED = 1
+"""The only frame of set-points that it takes."""
 
 
 class Hearer:
@@ -33,14 +40,22 @@ class Hearer:
         self.set_points_s: list[float] = []
         self._items: dict[int, list[Any]] = {0: [], 1: [], 2: []}
         self._coming: tuple[int, int, list[Any]] | None = None
+        self._answers: list[tuple[float, Any]] = []
         self._now_s = 0.0
+
+    def due(self, now_s: float) -> None:
+        """Sends the answers that are due."""
+        ready = [item for item in self._answers if item[0] <= now_s]
+        self._answers = [item for item in self._answers if item[0] > now_s]
+        for _, answer in ready:
+            self._send(answer)
 
     def hear(self, message: Any, now_s: float) -> None:
         """One message came."""
         self._now_s = now_s
         match message.get_type():
             case "HEARTBEAT":
-                self._autopilot.heard_ground(message.get_srcSystem())
+                self._autopilot.heard_ground(message.get_srcSystem(), station=message.type == self._m.MAV_TYPE_GCS)
             case "COMMAND_LONG" | "COMMAND_INT":
                 self._command(message)
             case "SET_POSITION_TARGET_LOCAL_NED":
@@ -63,7 +78,7 @@ class Hearer:
     def _set_point(self, message: Any) -> None:
         self.set_points_s.append(self._now_s)
         values = (message.x, message.y, message.z, message.vx, message.vy, message.vz, message.yaw)
-        if not all(math.isfinite(v) for v in values):
+        if message.coordinate_frame != LOCAL_NED or not all(math.isfinite(v) for v in values):
             return
         place = (message.x, message.y, message.z) if not message.type_mask & 7 else self._autopilot.body.ned_m
         velocity = (message.vx, message.vy, message.vz) if not message.type_mask & 56 else (0.0, 0.0, 0.0)
@@ -103,10 +118,12 @@ class Hearer:
         self._acknowledge(message, results.get(refusal, m.MAV_RESULT_TEMPORARILY_REJECTED))
 
     def _acknowledge(self, message: Any, result: int) -> None:
-        ack = self._m.MAVLink_command_ack_message(
-            message.command, result, 0, 0, message.get_srcSystem(), message.get_srcComponent()
-        )
-        self._send(ack)
+        m, back = self._m, (message.get_srcSystem(), message.get_srcComponent())
+        late_s = SLOW_S.get(message.command) if result == m.MAV_RESULT_ACCEPTED else None
+        if late_s is not None:
+            self._send(m.MAVLink_command_ack_message(message.command, m.MAV_RESULT_IN_PROGRESS, 10, 0, *back))
+        ack = m.MAVLink_command_ack_message(message.command, result, 0, 0, *back)
+        self._answers.append((self._now_s + (late_s or ANSWER_S), ack))
 
     def _set_mode(self, message: Any) -> str | None:
         number = int(message.param2)
@@ -166,10 +183,10 @@ class Hearer:
                 if len(items) < count:
                     self._send(m.MAVLink_mission_request_int_message(*back, len(items), kind))
                     return
-                self._items[kind], self._coming = items, None
+                self._take(kind, items)
                 self._send(m.MAVLink_mission_ack_message(*back, m.MAV_MISSION_ACCEPTED, kind))
             case "MISSION_COUNT" | "MISSION_CLEAR_ALL":
-                self._items[kind] = []
+                self._take(kind, [])
                 self._send(m.MAVLink_mission_ack_message(*back, m.MAV_MISSION_ACCEPTED, kind))
             case "MISSION_REQUEST_LIST":
                 self._send(m.MAVLink_mission_count_message(*back, len(self._items[kind]), kind))
@@ -179,6 +196,16 @@ class Hearer:
                 self._send(m.MAVLink_mission_item_int_message(*back, message.seq, *values, i.x, i.y, i.z, kind))
             case _:
                 pass
+
+    def _take(self, kind: int, items: list[Any]) -> None:
+        self._items[kind], self._coming = items, None
+        if kind == self._m.MAV_MISSION_TYPE_FENCE:
+            self._autopilot.fence = fence_of([(item.x, item.y) for item in items])
+
+    @property
+    def mission_commands(self) -> tuple[int, ...]:
+        """The commands of the uploaded mission, in order."""
+        return tuple(item.command for item in self._items[0])
 
     @property
     def fence_corners(self) -> int:

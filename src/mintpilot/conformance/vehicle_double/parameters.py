@@ -27,6 +27,10 @@ _PX4: dict[str, tuple[float, int]] = {
     "GF_ACTION": (2, INT32),
     "GF_MAX_VER_DIST": (0.0, REAL32),
     "RTL_RETURN_ALT": (30.0, REAL32),
+    "RTL_CONE_ANG": (45, INT32),
+    "RTL_TYPE": (0, INT32),
+    "NAV_RCL_ACT": (2, INT32),
+    "COM_FLTT_LOW_ACT": (3, INT32),
     "MAV_SYS_ID": (1, INT32),
 }
 _ARDUPILOT: dict[str, tuple[float, int]] = {
@@ -41,6 +45,12 @@ _ARDUPILOT: dict[str, tuple[float, int]] = {
     "FENCE_TYPE": (7, INT8),
     "FENCE_ENABLE": (0, INT8),
     "RTL_ALT_M": (15.0, REAL32),
+    "RTL_CONE_SLOPE": (3.0, REAL32),
+    "FS_THR_ENABLE": (1, INT8),
+    "FS_DR_ENABLE": (2, INT8),
+    "FS_EKF_ACTION": (1, INT8),
+    "BATT_LOW_VOLT": (10.5, REAL32),
+    "BATT_LOW_MAH": (0.0, REAL32),
     "PILOT_TKOFF_ALT": (0.0, REAL32),
 }
 

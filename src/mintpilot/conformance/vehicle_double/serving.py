@@ -15,6 +15,7 @@ from typing import Any, Self
 
 from mintpilot.conformance.vehicle_double.autopilot import DoubleAutopilot
 from mintpilot.conformance.vehicle_double.body import Ned
+from mintpilot.conformance.vehicle_double.camera import DoubleCamera
 from mintpilot.conformance.vehicle_double.faults import Fault, TimedFault, Wire
 from mintpilot.conformance.vehicle_double.hearing import Hearer
 from mintpilot.conformance.vehicle_double.parameters import Flavour
@@ -25,6 +26,7 @@ from mintpilot.simulation.scene import FlightRules, Scene
 
 STEP_S = 0.01
 READY_S = 60.0
+CLOSING_S = 3.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -40,6 +42,8 @@ class DoubleSetup:
     rules: FlightRules | None = None
     endurance_s: float = 1200.0
     seed: int = 0
+    camera_port: int | None = None
+    """Where pictures of the scene are had, as the frame source ``sim://127.0.0.1:PORT``; 0: any; None: no camera."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -57,8 +61,11 @@ class DoubleState:
     """When set-points came."""
     parameters: dict[str, float]
     fence_corners: int
+    mission_commands: tuple[int, ...]
+    """Of the mission that was uploaded."""
     verdict: str
     """What it flew into or out of; empty: nothing."""
+    camera_port: int | None = None
 
 
 class DoubleLoop:
@@ -82,6 +89,15 @@ class DoubleLoop:
         self._begun_s = time.monotonic()
         self._place = Place(setup.scene, setup.rules) if setup.scene is not None else None
         self._waiting = list(setup.faults)
+        self._camera: DoubleCamera | None = None
+        if setup.camera_port is not None and setup.scene is not None:
+            self._camera = DoubleCamera(setup.scene, setup.rules, setup.camera_port)
+            self._begun_s = time.monotonic()
+
+    @property
+    def camera_port(self) -> int | None:
+        """Port of pictures; None: it has no camera."""
+        return None if self._camera is None else self._camera.port
 
     def turn(self) -> None:
         """One step: hear, move, speak."""
@@ -94,6 +110,9 @@ class DoubleLoop:
         self.autopilot.step(now_s)
         if self._place is not None:
             self._place.move(now_s, self.autopilot.body)
+        if self._camera is not None:
+            self._camera.move(now_s, self.autopilot.reported_ned(), self.autopilot.body.heading_rad)
+        self._hearer.due(now_s)
         for message in self._speaker.due(now_s):
             self._send(message)
         for packet in self._out.due(now_s):
@@ -114,12 +133,16 @@ class DoubleLoop:
             set_points_s=tuple(self._hearer.set_points_s),
             parameters=dict(a.parameters.values),
             fence_corners=self._hearer.fence_corners,
+            mission_commands=self._hearer.mission_commands,
             verdict=self._place.verdict if self._place is not None else "",
+            camera_port=self.camera_port,
         )
 
     def close(self) -> None:
         """Ends it."""
         self._socket.close()
+        if self._camera is not None:
+            self._camera.close()
 
     def _receive(self, now_s: float) -> None:
         while True:
@@ -152,7 +175,7 @@ class VehicleDouble:
     def __init__(self, setup: DoubleSetup) -> None:
         context = multiprocessing.get_context("spawn")
         self._pipe, theirs = context.Pipe()
-        self._process = context.Process(target=_serve, args=(theirs, setup), name="vehicle-double", daemon=True)
+        self._process = context.Process(target=_serve, args=(theirs, setup), name="vehicle-double")
         self._process.start()
         theirs.close()
         if not self._pipe.poll(READY_S):
@@ -171,9 +194,10 @@ class VehicleDouble:
 
     def close(self) -> None:
         """Ends the process."""
+        self._pipe.close()
+        self._process.join(CLOSING_S)
         self._process.kill()
         self._process.join()
-        self._pipe.close()
         self._process.close()
 
     def __enter__(self) -> Self:

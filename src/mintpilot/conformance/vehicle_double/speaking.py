@@ -8,11 +8,9 @@ from typing import Any
 
 from mintpilot.conformance.vehicle_double.autopilot import DoubleAutopilot, DoubleMode
 from mintpilot.conformance.vehicle_double.faults import Fault
+from mintpilot.conformance.vehicle_double.fence import HOME_ALTITUDE_M, HOME_DEG, METRES_A_DEGREE
 from mintpilot.conformance.vehicle_double.parameters import Flavour
 
-HOME_DEG, HOME_ALTITUDE_M = (47.397742, 8.545594), 488.0
-"""Where it stands on the earth."""
-METRES_A_DEGREE = 111_319.5
 _PX4_MODES = {
     DoubleMode.HOLD: (4, 3), DoubleMode.TAKE_OFF: (4, 2), DoubleMode.FOLLOW: (6, 0), DoubleMode.RETURN: (4, 5),
     DoubleMode.LAND: (4, 6), DoubleMode.PILOT: (3, 0),
@@ -22,7 +20,7 @@ _COPTER_MODES = {
     DoubleMode.PILOT: 2,
 }  # fmt: skip
 UNASKED_HZ = {
-    Flavour.PX4: {0: 1.0, 1: 1.0, 30: 20.0, 32: 20.0, 33: 5.0, 24: 1.0, 245: 1.0, 147: 1.0, 242: 0.5},
+    Flavour.PX4: {0: 1.0, 1: 1.0, 30: 20.0, 32: 20.0, 33: 5.0, 24: 1.0, 245: 1.0, 147: 1.0, 242: 0.5, 230: 1.0},
     Flavour.ARDUPILOT: {0: 1.0},
 }
 """Message id → how often it is sent though nobody asked: ArduPilot sends its heartbeat only."""
@@ -56,7 +54,7 @@ class Speaker:
         self._makers: dict[int, Callable[[int], Any]] = {
             0: self._heartbeat, 1: self._sys_status, 24: self._gps, 30: self._attitude, 32: self._local,
             33: self._global, 49: self._origin, 147: self._battery, 148: self._version, 242: self._home,
-            245: self._extended,
+            245: self._extended, 230 if autopilot.flavour is Flavour.PX4 else 193: self._estimator,
         }  # fmt: skip
 
     def message(self, number: int, now_s: float) -> Any | None:
@@ -78,7 +76,8 @@ class Speaker:
 
     def _withheld(self, number: int) -> bool:
         faults = self._autopilot.faults
-        blind = not self._autopilot.knows_position and number in (32, 33, 24)
+        silent = (33, 24) if self._autopilot.flavour is Flavour.PX4 else (32, 33, 24)  # PX4 goes on guessing
+        blind = not self._autopilot.knows_position and number in silent
         return blind or (number == 0 and Fault.HEARTBEAT in faults)
 
     def _heartbeat(self, _: int) -> Any:
@@ -105,6 +104,12 @@ class Speaker:
         return m.MAVLink_sys_status_message(
             every, every, good, 200, 15200, 900, round(a.battery * 100), 0, 0, 0, 0, 0, 0
         )
+
+    def _estimator(self, ms: int) -> Any:
+        flags = 1 | 2 | 4 | 32 | (8 | 16 | 256 | 512 if self._autopilot.knows_position else 128)
+        if self._autopilot.flavour is Flavour.PX4:
+            return self._m.MAVLink_estimator_status_message(ms * 1000, flags, *[0.1] * 6, 0.3, 0.5)
+        return self._m.MAVLink_ekf_status_report_message(flags, 0.1, 0.1, 0.1, 0.1, 0.0)
 
     def _battery(self, _: int) -> Any:
         cells = [4000] * 4 + [65535] * 6

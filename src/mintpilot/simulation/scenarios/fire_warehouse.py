@@ -62,6 +62,8 @@ class FireWarehouseParameters:
     """The battery lasts for at least this multiple of the shortest mission's time (smoke harmless, room empty)."""
     endurance_most: float = 2.2
     """… and for at most this one. Drawn evenly in between, independently of the truths."""
+    thinking_s: float = 0.0
+    """Seconds that the battery lasts longer than that: for a person to think in."""
     reserve: float = 0.25
     """Share of the battery that plans leave for braking, corners and gusts: costs are lengths at cruise speed."""
     cruise_mps: float = 1.5
@@ -78,6 +80,8 @@ class FireWarehouseParameters:
             raise MissionError(f"smokes = {self.smokes}: must be a whole number from 0 to 6")
         if not (self.rooms == int(self.rooms) and 0 <= self.rooms <= 4):
             raise MissionError(f"rooms = {self.rooms}: must be a whole number from 0 to 4")
+        if not 0 <= self.thinking_s < math.inf:
+            raise MissionError(f"thinking_s = {self.thinking_s}: must be finite and not below 0")
         if not self.endurance_least <= self.endurance_most:
             raise MissionError(
                 f"endurance_least {self.endurance_least} is above endurance_most {self.endurance_most}: swap them"
@@ -127,7 +131,7 @@ def fire_warehouse(seed: int, **parameters: float) -> Scenario:
         seed=seed,
     )
     shortest_s = ways[0].length_m / p.cruise_mps + STAY_S
-    planned_s = shortest_s * float(battery.uniform(p.endurance_least, p.endurance_most))
+    planned_s = shortest_s * float(battery.uniform(p.endurance_least, p.endurance_most)) + p.thinking_s
     notes: dict[str, str | float] = {
         "smoke_places": ",".join(kinds),
         "room_places": ",".join(places),

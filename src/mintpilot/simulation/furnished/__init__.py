@@ -1,0 +1,1 @@
+"""Furnished rooms in many styles, with people in six postures: perception is measured on them, nothing is flown."""
