@@ -198,7 +198,7 @@ def _late(t: Transition, event: Answered) -> None:
         t.note("late-answer", f"'{said}' came when nothing was asked; it changed nothing.")
         return
     before = t.beliefs
-    after = _after_late(before, query, event.answer, t)
+    after = _after_late(before, query, event.answer, event.answer.part, t)
     if enlarges(before, after, t.state.setup.mission.asking):
         t.note("late-answer", f"'{said}' came too late; it would have taken caution away, and was ignored.")
         return
@@ -215,10 +215,10 @@ def _late(t: Transition, event: Answered) -> None:
         t.brake()
 
 
-def _after_late(before: BeliefState, query: Query, answer: Answer, t: Transition) -> BeliefState:
+def _after_late(before: BeliefState, query: Query, answer: Answer, part: int, t: Transition) -> BeliefState:
     settings = t.state.setup.mission.asking
     result = update(before, query, answer, settings)
     held = {gap.id for gap in before.belief.gaps}
     if not result.contradiction and set(query.gap_ids) <= held:
         return result.state
-    return revoke(before, query, answer.part)
+    return revoke(before, query, part)

@@ -48,7 +48,7 @@ def enlarges(before: BeliefState, after: BeliefState, settings: AskingSettings) 
     return not (new.enter <= old.enter and new.leave_out <= old.leave_out and new.pick <= old.pick)
 
 
-def revoke(state: BeliefState, query: Query, part: int | None) -> BeliefState:
+def revoke(state: BeliefState, query: Query, part: int) -> BeliefState:
     """The state after an answer to an earlier question was taken back.
 
     A single region or room gets the opposite value at once; where the query spoke of more, everything that it spoke of
@@ -73,7 +73,7 @@ def revoke(state: BeliefState, query: Query, part: int | None) -> BeliefState:
     )
 
 
-def _reopen_rooms(map: SemanticMap, query: Query, part: int | None, single: bool) -> SemanticMap:
+def _reopen_rooms(map: SemanticMap, query: Query, part: int, single: bool) -> SemanticMap:
     for room in map.rooms:
         if presence_id(room.id) in query.gap_ids and room.occupied is Knowledge.NO:
             present = single and _value(query, part, PRESENT, ABSENT) == PRESENT
@@ -81,7 +81,7 @@ def _reopen_rooms(map: SemanticMap, query: Query, part: int | None, single: bool
     return map
 
 
-def _value(query: Query, part: int | None, first: str, second: str) -> str:
+def _value(query: Query, part: int, first: str, second: str) -> str:
     """Which of two values an answer to a yes/no query about one gap says."""
     named = first if first in query.literals[0].values else second
     other = second if named == first else first

@@ -13,6 +13,7 @@ from pydantic import ConfigDict, Field
 from mintpilot.mission_file.schema_asking import asking_spec
 from mintpilot.mission_file.schema_base import (
     Attributes,
+    Duration,
     Metres,
     Name,
     NotNegative,
@@ -45,7 +46,7 @@ class VehicleSpec(Spec):
     """Of any commanded motion, metres per second squared."""
     endurance_s: Annotated[float, Field(gt=0, le=1e6)] | None = None
     """Flight time for the mission, seconds; default: unlimited."""
-    reserve_s: Seconds = 0.0
+    reserve_s: Duration = 0.0
     """Flight time that no plan may use, seconds."""
     returns: Literal["required", "if-possible", "none"] = Field(default="none", alias="return")
     """Whether it flies back to the start when its task is done; `required`: every plan leaves battery for that."""
@@ -114,7 +115,7 @@ class GoalSpec(Spec):
     """Id of one room of the world: its viewpoint."""
     position_m: Place | None = None
     """A fixed place."""
-    dwell_s: Seconds = 2.0
+    dwell_s: Duration = 2.0
     """How long the drone stays there, seconds."""
     price_s: NotNegative | None = None
     """What leaving it undone costs, seconds of flight; default: `asking.failure_price_s`."""

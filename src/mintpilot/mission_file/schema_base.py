@@ -40,7 +40,7 @@ Several: TypeAlias = Annotated[tuple[T, ...], BeforeValidator(_as_tuple)]
 """A list in the file."""
 Probability: TypeAlias = Annotated[float, Field(ge=0, le=1)]
 Positive: TypeAlias = Annotated[float, Field(gt=0)]
-Seconds: TypeAlias = Annotated[float, Field(ge=0, le=1e6)]
+Duration: TypeAlias = Annotated[float, Field(ge=0, le=1e6)]
 """Up to eleven days."""
 Metres: TypeAlias = Annotated[float, Field(ge=0, le=1e3)]
 """Of a vehicle or a distance kept from something."""
