@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -158,8 +159,7 @@ class Ear:
         Raises:
             DeviceError: a recogniser failed.
         """
-        ours = () if utterance.is_too_long else self.first.hypotheses(utterance.samples)
-        theirs = self.second.hypotheses(utterance.samples) if ours else ()
+        ours, theirs = ((), ()) if utterance.is_too_long else self._both(utterance.samples)
         text, second, probability, is_sure = self._decided(ours, theirs)
         return Hearing(
             text=text,
@@ -170,6 +170,14 @@ class Ear:
             duration_s=len(utterance.samples) / RATE_HZ,
             written=(ours[0].text if ours else "", theirs[0].text if theirs else ""),
         )
+
+    def _both(self, samples: Floats) -> tuple[tuple[Hypothesis, ...], tuple[Hypothesis, ...]]:
+        """Of both recognisers, at the same time; nothing of the second where the first heard nothing."""
+        with ThreadPoolExecutor(1, thread_name_prefix="mintpilot second recogniser") as pool:
+            second = pool.submit(self.second.hypotheses, samples)
+            ours = self.first.hypotheses(samples)
+            theirs = second.result()
+        return ours, theirs if ours else ()
 
     def _decided(self, ours: tuple[Hypothesis, ...], theirs: tuple[Hypothesis, ...]) -> tuple[str, str, float, bool]:
         mine, other = _of_words(ours), _of_words(theirs)
