@@ -19,7 +19,6 @@ from mintpilot.mission_file.schema_base import (
     NotNegative,
     Place,
     Probability,
-    Seconds,
     Several,
     Spec,
     ThinkWords,
