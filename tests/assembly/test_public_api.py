@@ -27,7 +27,9 @@ def test_every_registered_part_can_be_made(port: str, name: str, monkeypatch: py
     monkeypatch.setenv("MINTPILOT_LLM_MODEL", "tiny")
     pictures = ("medicine-boxes", SourceOptions(color=Path("a.png"), depth=Path("b.png"))) if port == "frames" else ()
     try:
-        made = registry.load(port, name)(*pictures)
+        made = registry.load(port, name)
+        if port != "vehicle":  # one of those connects to its address
+            made = made(*pictures)
     except MissingPartError as error:
         pytest.skip(str(error))
     assert made is not None
