@@ -1,7 +1,7 @@
 """People reached, against never asking, into docs/results.md. `python -m bench.reached RECORDS`.
 
 Records are made by
-`mintpilot bench table1 --trials 1000 --seed 30000 --only mint --only passive-conservative --out RECORDS`.
+`mintpilot bench table1 --trials 1000 --seed 30000 --only mint --only passive-conservative --think 0 --out RECORDS`.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ def main() -> None:
             name="30-reached",
             title="Missions that give what they can: people reached",
             command=f"mintpilot bench table1 --trials {config.trials} --seed {config.seed} --only {ASKS} "
-            f"--only {NEVER} --out RECORDS; python -m bench.reached RECORDS",
+            f"--only {NEVER} --think 0 --out RECORDS; python -m bench.reached RECORDS",
             how="Table 1's worlds on the kinematic simulator, batteries as they are drawn, right answers at once. "
             "Somebody counts as reached by the simulator's judge.",
             tables=(
