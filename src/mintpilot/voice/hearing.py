@@ -35,8 +35,6 @@ class HearingSettings:
     """Sound kept from before its beginning."""
     confidence: float = 0.02
     """Least product of both recognisers' probabilities of one of `mintpilot.voice.ports.WORDS`."""
-    confirmation: float = 0.005
-    """The same for "confirm", which nothing but "conform" came near in the clips that the thresholds were chosen on."""
     freely: float = 0.5
     """Least probability of each recogniser's free text, which must be read alike."""
 
@@ -186,8 +184,7 @@ class Ear:
         free = [found[0] if found else Hypothesis(text="", probability=0.0) for found in (ours, theirs)]
         written = {_word(h.text) for h in free} & {*WORDS}
         is_confirmation = best in _CONFIRMS
-        least = self.settings.confirmation if is_confirmation else self.settings.confidence
-        if best and both[best] >= least and not (is_confirmation and written - _CONFIRMS):
+        if best and both[best] >= self.settings.confidence and not (is_confirmation and written - _CONFIRMS):
             return best, best, both[best], True
         is_sure = not written and all(h.probability >= self.settings.freely for h in free)
         return free[0].text, free[1].text, free[0].probability * free[1].probability, is_sure
