@@ -8,7 +8,6 @@ from collections import OrderedDict
 from mintpilot.console.board import Board
 from mintpilot.console.protocol import PictureBox, PicturePane
 from mintpilot.core.events import FrameSeen
-from mintpilot.core.gap import KnowledgeGap
 from mintpilot.core.query import Question
 from mintpilot.core.semantic_map import SemanticMap
 
@@ -49,8 +48,8 @@ class Pictures:
         """The pictures in which the things are that the question is about, with their outlines."""
         by_frame: dict[int, list[PictureBox]] = {}
         for gap in question.gaps if map is not None else ():
-            for name, words in _subjects(gap):
-                view = _view(map, name) if map is not None else None
+            for name, words, _ in gap.spots:
+                view = map.best_view(name) if map is not None else None
                 if view is not None and view[0] in self._kept:
                     box = PictureBox(id=name, words=words, box=_box(view[1:]))
                     by_frame.setdefault(view[0], []).append(box)
@@ -68,19 +67,6 @@ class Pictures:
         """Nothing is asked about."""
         for number in range(MOST_SHOWN):
             self._board.put(f"evidence-{number}", PicturePane(frame=-1, time_s=0.0))
-
-
-def _subjects(gap: KnowledgeGap) -> list[tuple[str, str]]:
-    if gap.candidates:
-        return [(c.id, c.description or c.id) for c in gap.candidates]
-    return [(gap.subject, gap.description)]
-
-
-def _view(map: SemanticMap, name: str) -> tuple[int, int, int, int, int] | None:
-    views = {region.id: region.best_view for region in map.regions}
-    views |= {room.id: room.best_view for room in map.rooms}
-    views |= {one.id: one.best_view for one in map.objects}
-    return views.get(name)
 
 
 def _box(pixels: tuple[int, ...]) -> tuple[float, float, float, float]:

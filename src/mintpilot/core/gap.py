@@ -123,6 +123,14 @@ class KnowledgeGap:
             raise MissionError(f"gap '{self.id}': the candidates' ids must be its values, in order")
 
     @property
+    def spots(self) -> tuple[tuple[str, str, Vec3], ...]:
+        """(id, words, place) of each thing that it is about; none where it is about the flight itself."""
+        if self.kind is GapKind.GO:
+            return ()
+        found = tuple((one.id, one.description or one.id, one.position_m) for one in self.candidates)
+        return found or ((self.subject, self.description, self.position_m),)
+
+    @property
     def in_doubt(self) -> bool:
         """Whether a phrase may mean none of its candidates."""
         return any(v in NOWHERE for v in self.values)

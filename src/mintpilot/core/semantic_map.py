@@ -133,6 +133,11 @@ class SemanticMap:
                 return candidate
         raise KeyError(object_id)
 
+    def best_view(self, name: str) -> tuple[int, int, int, int, int] | None:
+        """The picture that shows a thing, region or room best, and its box there; None where there is none."""
+        known: tuple[MapObject | Room | Region, ...] = (*self.objects, *self.rooms, *self.regions)
+        return next((one.best_view for one in known if one.id == name), None)
+
     def with_region(self, region_id: str, passable: Knowledge) -> SemanticMap:
         """The map with that region's passability known (or open again)."""
         regions = tuple(replace(r, passable=passable) if r.id == region_id else r for r in self.regions)

@@ -15,7 +15,6 @@ from rich.console import Console, Group
 from rich.text import Text
 
 from mintpilot.core.errors import DeviceError
-from mintpilot.core.gap import GapKind
 from mintpilot.core.inputs import Answered, MoreTimeWanted, OperatorInput, Ordered, QuestionShown
 from mintpilot.core.ports import Operator, Understand
 from mintpilot.core.query import Answer, Order, Question, Reply, Standing
@@ -279,14 +278,11 @@ class TerminalOperator(Operator):
 
     def _places(self, question: Question) -> tuple[Text, ...]:
         """Where the things are that the question is about, on the map."""
-        spots = [
-            spot
+        return tuple(
+            Text(f"  {_printable(words)}: x {at[0]:.1f} m, y {at[1]:.1f} m")
             for gap in question.gaps
-            if gap.kind is not GapKind.GO
-            for spot in [(c.description or c.id, c.position_m) for c in gap.candidates]
-            or [(gap.description, gap.position_m)]
-        ]
-        return tuple(Text(f"  {_printable(words)}: x {at[0]:.1f} m, y {at[1]:.1f} m") for words, at in spots)
+            for _, words, at in gap.spots
+        )
 
     def _show(self, question: Question, patience_s: float) -> None:
         words = self._words

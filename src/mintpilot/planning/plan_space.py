@@ -12,11 +12,8 @@ from mintpilot.core.ports import PlanSpace
 from mintpilot.planning.itinerary import itinerary_of, needed_value
 from mintpilot.planning.legs import LegTable, PathSearch
 from mintpilot.planning.route import Route
-from mintpilot.planning.selection import Selection, Selector
+from mintpilot.planning.selection import NOT_SETTLED, Selection, Selector
 from mintpilot.planning.terrain import Terrain
-
-NOWHERE = ""
-"""Value of a target gap that is not known, for plans that must not guess it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,7 +27,7 @@ class _Case:
     visits: tuple[Stop, ...]
     """Optional stops that may be needed, each with its chance under what is assumed."""
     values: tuple[tuple[str, tuple[str, ...]], ...]
-    """For each target gap, the values to choose among; ``NOWHERE`` alone: its stops are left undone."""
+    """For each target gap, the values to choose among; ``NOT_SETTLED`` alone: its stops are left undone."""
 
 
 class GridPlanSpace(PlanSpace):
@@ -106,7 +103,7 @@ class GridPlanSpace(PlanSpace):
                 self._weighed(s, given) for s in self.itinerary.optional if needed_value(s) in self._possible(s, given)
             ),
             tuple(
-                (t, (NOWHERE,) if self._matters(t, given) else self._values(t, given)[:1])
+                (t, (NOT_SETTLED,) if self._matters(t, given) else self._values(t, given)[:1])
                 for t in self.itinerary.targets
             ),
         )

@@ -18,6 +18,8 @@ from mintpilot.planning.legs import Cell3, LegTable
 from mintpilot.planning.route import Route, Tour, best_route
 from mintpilot.planning.subsets import MAX_STOPS, best_set, members, set_costs
 
+NOT_SETTLED = ""
+"""Value of a target gap that is not known, for plans that must not guess it."""
 MAX_FREE = 6
 """With more optional stops, one best order is taken without comparing all that cost the same."""
 
@@ -254,7 +256,7 @@ class Selector:
 
     def _unreachable(self, stop: Stop, values: Mapping[str, str]) -> LeftUndone:
         resource = Shortage.WAY
-        if values.get(stop.gap) == "":
+        if values.get(stop.gap) == NOT_SETTLED:
             resource = Shortage.ANSWER
         elif values.get(stop.gap) in NOWHERE:
             resource = Shortage.UNSEEN

@@ -9,8 +9,6 @@ from PIL import Image, ImageDraw
 
 from mintpilot.core.decisions import AskQuestion
 from mintpilot.core.events import Event, MapUpdated, MissionStarted, Stepped
-from mintpilot.core.gap import GapKind, KnowledgeGap
-from mintpilot.core.geometry import Vec3
 from mintpilot.core.inputs import DeliberationEnded
 from mintpilot.core.mission import Mission
 from mintpilot.core.query import Question
@@ -62,21 +60,18 @@ class QuestionNotes:
 
         place = self.folder / "questions"
         place.mkdir(parents=True, exist_ok=True)
-        spots = tuple(spot for gap in question.gaps for spot in _spots(gap))
+        spots = tuple((words, at) for gap in question.gaps for _, words, at in gap.spots)
         start_m = self._mission.start_m if self._mission is not None else self._map.frame.box.centre_m
         name = question.id or "question"
         chart = place / f"{name}-map.png"
         save_topdown(TopDown(map=self._map, start_m=start_m, goals=spots), chart)
         return (chart, *self._pictures(question, self._map, place, name))
 
-    def _pictures(self, question: Question, map: SemanticMap, place: Path, name: str) -> list[Path]:
-        views = {region.id: region.best_view for region in map.regions}
-        views |= {room.id: room.best_view for room in map.rooms}
-        views |= {thing.id: thing.best_view for thing in map.objects}
+    def _pictures(self, question: Question, map: SemanticMap, place: Path, title: str) -> list[Path]:
         boxes: dict[int, list[tuple[int, ...]]] = {}
         for gap in question.gaps:
-            for subject in [candidate.id for candidate in gap.candidates] or [gap.subject]:
-                view = views.get(subject)
+            for name, _, _ in gap.spots:
+                view = map.best_view(name)
                 if view is not None:
                     boxes.setdefault(view[0], []).append(view[1:])
         store, written = FrameStore(self.folder / "frames"), []
@@ -89,13 +84,7 @@ class QuestionNotes:
             pen = ImageDraw.Draw(picture)
             for left, top, right, bottom in outlines:
                 pen.rectangle((left, top, max(left, right), max(top, bottom)), outline=(255, 220, 0), width=2)
-            file = place / f"{name}-picture-{index}.png"
+            file = place / f"{title}-picture-{index}.png"
             picture.save(file)
             written.append(file)
         return written
-
-
-def _spots(gap: KnowledgeGap) -> list[tuple[str, Vec3]]:
-    if gap.candidates:
-        return [(one.description or one.id, one.position_m) for one in gap.candidates]
-    return [(gap.description, gap.position_m)] if gap.kind is not GapKind.GO else []
