@@ -59,7 +59,7 @@ def _on_map(parts: DeliberationParts, map: SemanticMap) -> list[str]:
     unknown = [gap.description for gap in found.findings.gaps]
     mint = found.decision.mint
     optimistic = None if mint is None else mint.root.optimistic
-    need_s = None if optimistic is None else optimistic.cost_s
+    need_s = None if optimistic is None else optimistic.cost_s + optimistic.home_s
     return [
         f"Not known: {'; '.join(unknown)}." if unknown else "Everything that matters is known.",
         _battery(parts.mission.limits.endurance_s, need_s),

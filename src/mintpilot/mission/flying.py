@@ -11,6 +11,7 @@ from mintpilot.core.inputs import Link, MapObserved
 from mintpilot.core.mission import Achieved, Outcome, ReturnRule
 from mintpilot.core.plan import Leg, Plan, Stop
 from mintpilot.core.task import Action
+from mintpilot.mission.outlasting import outlasted
 from mintpilot.mission.requests import Purpose
 from mintpilot.mission.state import Activity, Ending, Goal, uncertain_things
 from mintpilot.mission.transition import Transition, partial_reason
@@ -72,6 +73,9 @@ def fly_leg(t: Transition, decision: FlyTrajectory) -> None:
         return
     plan = t.state.plan
     assert plan is not None
+    if outlasted(t, decision.trajectory):
+        plan_again(t)
+        return
     rest = np.vstack([leg.path_m for leg in plan.legs[t.state.leg :]])
     t.follow(decision.trajectory, Activity.LEG, rest, unsafe=True)
 
@@ -154,6 +158,9 @@ def go_back(t: Transition, decision: GoBack) -> None:
         return
     if decision.trajectory is None:
         there(t)
+        return
+    if outlasted(t, decision.trajectory):
+        proceed_back(t)
         return
     if t.state.goal is Goal.LAND and t.state.land_here:
         t.set(land_here=False)

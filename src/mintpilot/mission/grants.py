@@ -11,9 +11,14 @@ from scipy import ndimage
 from mintpilot.core.gap import Belief, obstacle_id
 from mintpilot.core.geometry import Bools, GridFrame, Ints
 from mintpilot.core.mission import AskingSettings
+from mintpilot.core.plan import VehicleLimits
 from mintpilot.core.semantic_map import Knowledge, SemanticMap
+from mintpilot.core.trajectory import Trajectory
 from mintpilot.mission.belief_state import BeliefState, Grant
+from mintpilot.planning.flyable import region_reach
 
+SPARE_S = 1.0
+"""A flight must be out of a region so long before the yes for it runs out, seconds."""
 MARGIN_VOXELS = 1
 """A permission covers the outline that was shown, grown by this many voxels."""
 
@@ -59,7 +64,20 @@ def reopened(
         if unfounded:
             void.add(gap)
     void |= {gap for gap, grant in grants.items() if now_s >= grant.given_s + settings.answer_valid_s}
-    return _without(state, frozenset(void)) if void else state
+    return without(state, frozenset(void)) if void else state
+
+
+def leaves_s(trajectory: Trajectory, map: SemanticMap, gap: str, limits: VehicleLimits) -> float:
+    """When the body is last in a region on a flight, seconds from its beginning; 0 where it never is."""
+    cells = map.frame.cells_of(trajectory.position_m)
+    if map.frame.is_flat:
+        cells[:, 0] = 0
+    flat = np.ravel_multi_index(tuple(np.clip(cells, 0, np.array(map.frame.shape) - 1).T), map.frame.shape)
+    for region in map.regions:
+        if obstacle_id(region.id) == gap:
+            inside = np.flatnonzero(np.isin(flat, region_reach(map, region, limits)))
+            return float(trajectory.time_s[inside[-1]]) if len(inside) else 0.0
+    return 0.0
 
 
 def covers(outline: Ints, cells: Ints, frame: GridFrame) -> bool:
@@ -72,11 +90,15 @@ def covers(outline: Ints, cells: Ints, frame: GridFrame) -> bool:
     return bool(grown.ravel()[cells].all())
 
 
-def _without(state: BeliefState, gaps: frozenset[str]) -> BeliefState:
+def without(state: BeliefState, gaps: frozenset[str], *, blocked: frozenset[str] = frozenset()) -> BeliefState:
+    """The state without the permissions for these gaps: they are open again, or count as blocked."""
     map = state.map
     for region in map.regions:
-        if obstacle_id(region.id) in gaps and region.passable is Knowledge.YES:
+        if obstacle_id(region.id) in blocked:
+            map = map.with_region(region.id, Knowledge.NO)
+        elif obstacle_id(region.id) in gaps and region.passable is Knowledge.YES:
             map = map.with_region(region.id, Knowledge.OPEN)
+    gaps |= blocked
     factors = tuple(f for f in state.belief.factors if not any(gap.id in gaps for gap in f.gaps))
     return replace(
         state,

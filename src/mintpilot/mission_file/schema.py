@@ -45,7 +45,8 @@ class VehicleSpec(Spec):
     max_acceleration_mps2: Annotated[float, Field(ge=0.01, le=100)] = 2.0
     """Of any commanded motion, metres per second squared."""
     endurance_s: Annotated[float, Field(gt=0, le=1e6)] | None = None
-    """Flight time for the mission, seconds; default: unlimited."""
+    """Flight time for the mission, seconds; plans leave a fifth of it for braking, corners and gusts; default:
+    unlimited."""
     reserve_s: Duration = 0.0
     """Flight time that no plan may use, seconds."""
     returns: Literal["required", "if-possible", "none"] = Field(default="none", alias="return")
