@@ -37,6 +37,7 @@ KEYS = {
     "outcome",
     "achieved",
     "left",
+    "people",
     "questions",
     "gaps",
     "waiting",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from mintpilot.core.query import Reply
+from mintpilot.recording.people import PeopleSummary, people_of
 from mintpilot.recording.record import (
     AchievedRecord,
     Figure,
@@ -50,6 +51,7 @@ class RunSummary(Part):
     gaps: tuple[GapSummary, ...]
     achieved: tuple[AchievedRecord, ...]
     left: tuple[LeftRecord, ...]
+    people: PeopleSummary
     waiting: WaitingRecord | None
     flight: FlightRecord
     timings_s: dict[str, float]
@@ -71,6 +73,7 @@ def summary(record: MissionRecord) -> RunSummary:
         gaps=tuple(GapSummary(**{name: getattr(g, name) for name in GapSummary.model_fields}) for g in record.gaps),
         achieved=record.achieved,
         left=record.left,
+        people=people_of(record),
         waiting=record.waiting,
         flight=record.flight,
         timings_s=record.timings_s,
