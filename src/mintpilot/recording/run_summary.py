@@ -46,7 +46,9 @@ class RunSummary(Part):
 
     schema_version: int
     outcome: str
-    """``success``, or the reason of failure by its stable name, e.g. ``collision``."""
+    """``success``, or how it failed by its stable name, e.g. ``collision``."""
+    reason: str
+    """The same in a sentence."""
     questions: tuple[QuestionSummary, ...]
     gaps: tuple[GapSummary, ...]
     achieved: tuple[AchievedRecord, ...]
@@ -64,6 +66,7 @@ def summary(record: MissionRecord) -> RunSummary:
     return RunSummary(
         schema_version=record.schema_version,
         outcome=record.outcome.value,
+        reason=record.reason,
         questions=tuple(
             QuestionSummary(
                 text=q.text, gap=", ".join(q.gaps), gain_bits=q.gain_bits, reply=q.reply, latency_s=q.latency_s
