@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, TypeAlias, cast
 
 from mintpilot.assembly.components import Choices, VehicleChoice, components_for, deliberation_parts, scripted_operator
 from mintpilot.assembly.deliberation_report import DeliberationReport, deliberation_report
+from mintpilot.assembly.policies import make_planner
 from mintpilot.assembly.registry import names
 from mintpilot.assembly.strategies import Argument, strategy_label
 from mintpilot.assembly.talk import Talk, talk_for
@@ -163,6 +164,7 @@ def run_mission(
         namers=tuple(file.perception.namers) if perception in (None, file.perception.use) else (),
         calibration=_calibration(file, folder) if perception in (None, file.perception.use) else None,
     )
+    make_planner(planner)  # a wrong name, or a file that cannot be used, is told before anything is kept
     with talk_for(file.language, llm=llm, lang=lang) as talk:
         world = build_world(file, base=folder, seed=seed, parse=talk.parse)
         several = operator if isinstance(operator, tuple) else (operator,)

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 from mintpilot.assembly.registry import check_name, load
 from mintpilot.core.errors import InputError
-from mintpilot.core.ports import ImpactMetric, Planner, Policy
-from mintpilot.policies.files import SUFFIX, load_policy
+
+if TYPE_CHECKING:
+    from mintpilot.core.ports import ImpactMetric, Planner, Policy
 
 _BY_POLICY: Final = {"planner": "policy", "metric": "q-value"}
 """Port → the part that goes by a policy."""
@@ -45,13 +46,15 @@ def check_metric_name(name: str) -> None:
 
 
 def make_policy(name: str) -> Policy:
-    """A policy by its registered name, or from its file (``.npz``, seen from the present folder).
+    """A policy by its registered name, or from its file (a name with a suffix, seen from the present folder).
 
     Raises:
         UnknownNameError: nobody registered that policy.
         InputError: its file cannot be used.
     """
-    if name.endswith(SUFFIX):
+    if Path(name).suffix:
+        from mintpilot.policies.files import load_policy
+
         return load_policy(Path(name))
     made: Policy = load("policy", name)()
     return made
