@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from bench.policy_judge import costs_to, critical_regions
 
+from mintpilot.conformance.sample import sample_problem
 from mintpilot.core.gap import Assumptions
 from mintpilot.core.mission import AskingSettings
 from mintpilot.core.policy import PolicyState, policy_task, step_lengths, steps
@@ -81,3 +84,21 @@ def test_the_loss_is_what_the_cautious_plan_costs_more() -> None:
         assert loss_s == pytest.approx(sure.cost_s - best.cost_s)
         checked += 1
     assert checked >= 4
+
+
+@pytest.mark.parametrize("home", [False, True])
+def test_a_mission_of_several_stops_in_three_dimensions_is_judged_alike(home) -> None:
+    problem = sample_problem()
+    problem = replace(problem, home_m=problem.start_m if home else None)
+    belief = prior_belief(problem.gaps)
+    plain = build_tree(GridPlanner().open(problem), belief, SETTINGS, FrechetMetric())
+    policy = build_tree(PolicyPlanner().open(problem), belief, SETTINGS, QValueMetric().on(problem))
+    shapes = [
+        [
+            (n.branch_on, n.leaf, round(n.probability, 9), n.plan and round(n.plan.cost_s, 6))
+            for n in nodes_of(tree.root)
+        ]
+        for tree in (plain, policy)
+    ]
+    assert len(shapes[0]) > 3
+    assert shapes[1] == shapes[0]
