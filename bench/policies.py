@@ -266,16 +266,17 @@ def notes(found: dict[str, list[Outcome]], errors: Sequence[Misled]) -> list[str
         if not flown:
             continue
         made.append(
-            f"{learned_name(transitions).capitalize()}: {sum(e.lost for e in mine)} of {sum(e.ways for e in mine)} "
-            f"flights do not arrive; the loss that decides first is off by {np.mean(losses):.2f} s on average; of "
+            f"After {transitions // 1_000_000} M transitions {sum(e.lost for e in mine)} of "
+            f"{sum(e.ways for e in mine)} flights do not arrive; the loss that decides first is off by {np.mean(losses):.2f} s on average. Of "
             f"{sum(len(o.wanted) for o in judged)} critical gaps its values miss "
-            f"{sum(len(o.wanted - o.judged) for o in judged)} on the shortest ways, and "
+            f"{sum(len(o.wanted - o.judged) for o in judged)} on the shortest ways "
+            f"({sum(len(o.judged - o.wanted) for o in judged)} others are called critical), and "
             f"{sum(len(o.wanted - o.judged) for o in flown)} where it flies too."
         )
     made += [
         "Learned values promise too much where little was tried. The loss of a gap is summed over just those actions: "
         "the cautious way under the hypothesis that all is well, which a policy for that hypothesis has no reason to "
-        "try. So its ways can be the shortest while the loss is still too small.",
+        "try. So its ways can be the shortest while the loss is still wrong.",
         "A policy that does not arrive makes the flight no less safe, but worse: a way that it does not find does not "
         "exist for its planner, so there is nothing to ask about, and what could be done is left undone. The plan's "
         "notes say so.",
