@@ -267,7 +267,8 @@ def notes(found: dict[str, list[Outcome]], errors: Sequence[Misled]) -> list[str
             continue
         made.append(
             f"After {transitions // 1_000_000} M transitions {sum(e.lost for e in mine)} of "
-            f"{sum(e.ways for e in mine)} flights do not arrive; the loss that decides first is off by {np.mean(losses):.2f} s on average. Of "
+            f"{sum(e.ways for e in mine)} flights do not arrive; the loss that decides first is off by "
+            f"{np.mean(losses):.2f} s on average. Of "
             f"{sum(len(o.wanted) for o in judged)} critical gaps its values miss "
             f"{sum(len(o.wanted - o.judged) for o in judged)} on the shortest ways "
             f"({sum(len(o.judged - o.wanted) for o in judged)} others are called critical), and "
