@@ -38,6 +38,7 @@ COMMANDS = (
     "bench gaps",
     "bench language",
     "bench trust",
+    "policy learn",
     "bench report",
     "bench export",
     "understand answer",

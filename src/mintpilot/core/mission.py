@@ -134,7 +134,7 @@ class AskingSettings:
     objective: str = setting("information-gain", "Name of the query objective.")
     max_nodes: int = setting(4096, "Bound on the tree's nodes.", least=1)
     max_joint: int = setting(65536, "Bound on the joint hypotheses held.", least=1)
-    impact_metric: str = setting("frechet", "Name of the distance between paths.")
+    impact_metric: str = setting("frechet", "Name of the metric between paths; `q-value:FILE`: by a policy.")
 
     def __post_init__(self) -> None:
         for one in fields(self):

@@ -18,6 +18,7 @@ from mintpilot.core.ports import (
     Decision,
     Fly,
     ImpactMetric,
+    PlanMetric,
     Planner,
     Proposer,
     QueryObjective,
@@ -255,7 +256,7 @@ def _deliberate(
         asked=state.asked,
         silent=state.silent,
         settings=remaining_budget(parts.settings, state),
-        metric=parts.metric,
+        metric=parts.metric.on(problem) if isinstance(parts.metric, PlanMetric) else parts.metric,
         objective=parts.objective,
         proposer=parts.proposer,
     )
