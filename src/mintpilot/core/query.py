@@ -31,6 +31,8 @@ NONE_OF_THESE = "none of these"
 """What the part of a choice is called that no option covers."""
 MAX_PARTS = 4
 """A query divides the joint hypotheses into no more parts than this."""
+CHOICE_EFFORT = 1.6
+"""How many times as long as a yes or no the answer to a choice takes (method, section 13)."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -72,6 +74,11 @@ class Query:
     def part_count(self) -> int:
         """How many parts it has, 2 to `MAX_PARTS`."""
         return len(self.options) + self.none_of_these if self.options else 2
+
+    @property
+    def effort(self) -> float:
+        """How many times as long as a yes or no its answer takes: 1, or `CHOICE_EFFORT`."""
+        return CHOICE_EFFORT if self.options else 1.0
 
     @property
     def id(self) -> str:
@@ -323,6 +330,7 @@ def answer_for(query: Query, part: int, *, latency_s: float = 0.0, text: str = "
 
 
 __all__ = [
+    "CHOICE_EFFORT",
     "MAX_PARTS",
     "NONE_OF_THESE",
     "NO_PART",

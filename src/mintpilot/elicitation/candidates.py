@@ -12,11 +12,14 @@ from functools import lru_cache
 from itertools import combinations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mintpilot.core.gap import PASSABLE, PRESENT, GapKind, Joint, KnowledgeGap
 from mintpilot.core.geometry import SmallInts, Vec3, frozen
+from mintpilot.core.mission import QueryKinds
 from mintpilot.core.query import Combine, Literal, Query, Saying, SayingKind, is_refused
 from mintpilot.core.tree import Mint
+from mintpilot.elicitation.choices import choices_about
 from mintpilot.elicitation.partitions import partition_keys
 from mintpilot.elicitation.phrasing_cost import phrasing_cost
 from mintpilot.elicitation.referents import referent_literals
@@ -26,6 +29,8 @@ MAX_TOGETHER = 3
 """Most gaps in one any-of or all-of query."""
 MAX_QUERIES = 1000
 """Bound on the queries that are looked at, those of least phrasing cost first."""
+MAX_CHOICES = 250
+"""The same for choices."""
 MAX_KEPT = 1 << 20
 """Tables of parts with more cells than this are made anew each time."""
 MAX_CELLS = 1 << 21
@@ -60,30 +65,43 @@ def candidate_queries(
     *,
     start_m: Vec3 | None = None,
     refused: Collection[str] = (),
+    kinds: QueryKinds = QueryKinds.YES_NO,
 ) -> tuple[Query, ...]:
-    """The queries that divide what the tree holds, those of least phrasing cost first, then by id.
+    """The queries that divide what the tree holds: yes/no ones, then choices; of least phrasing cost first, then by id.
 
     Args:
         mint: the tree; only gaps that it branches on are asked about.
         start_m: where the drone is, metres.
         refused: what is not to be asked (`mintpilot.core.query.is_refused`); nor are queries that divide the hypotheses
             like one that is refused itself.
+        kinds: which kinds of query are made.
     """
-    support, language = mint.support, _language(mint.belief.gaps, start_m)
+    support = mint.support
     most = max(1, min(MAX_QUERIES, MAX_CELLS // max(1, support.size)))
+    plain = _divisions(_language(mint.belief.gaps, start_m), mint, most, refused)
+    if kinds is QueryKinds.YES_NO:
+        return tuple(plain)
+    choices = _divisions(_choices(mint.belief.gaps), mint, min(most, MAX_CHOICES), refused)
+    # What a yes or no tells as well is not asked as a choice: that takes longer.
+    told = {key.tobytes() for key in plain.values()}
+    return (*plain, *(query for query, key in choices.items() if key.tobytes() not in told))
+
+
+def _divisions(language: _Language, mint: Mint, most: int, refused: Collection[str]) -> dict[Query, NDArray[np.uint8]]:
+    """The queries that divide what the tree holds, of those that divide alike one only; with how they do."""
     looked_at = language.queries[: 2 * most]
-    rows = language.parts(mint.belief, len(looked_at))[:, support]
+    rows = language.parts(mint.belief, len(looked_at))[:, mint.support]
     keys = partition_keys(rows)
     _, key_of = np.unique(keys, axis=0, return_inverse=True)
     kinds, divides = key_of.ravel(), np.any(keys, axis=1)
     taken = {kinds[i] for i, query in enumerate(looked_at) if refused and query.id in refused}
-    kept: list[Query] = []
+    kept: dict[Query, NDArray[np.uint8]] = {}
     for i, query in enumerate(looked_at):
         # Of those that divide alike the first one has the least phrasing cost.
         if len(kept) < most and divides[i] and kinds[i] not in taken and not is_refused(query, refused):
             taken.add(kinds[i])
-            kept.append(query)
-    return tuple(kept)
+            kept[query] = keys[i]
+    return kept
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,6 +131,13 @@ def _language(gaps: tuple[KnowledgeGap, ...], start_m: Vec3 | None) -> _Language
     ranked = sorted(set(_queries(literals, gaps)), key=phrasing_cost)
     sayable = tuple(q for q in ranked if len(q.literals) == 1 or is_sayable(q, known))
     return _Language(queries=sayable, tables={})
+
+
+@lru_cache(maxsize=64)
+def _choices(gaps: tuple[KnowledgeGap, ...]) -> _Language:
+    known = {g.id: g for g in gaps}
+    ranked = sorted(set(choices_about(gaps)), key=phrasing_cost)
+    return _Language(queries=tuple(q for q in ranked if is_sayable(q, known)), tables={})
 
 
 def _queries(literals: dict[str, tuple[Literal, ...]], gaps: Iterable[KnowledgeGap]) -> Iterator[Query]:

@@ -54,7 +54,9 @@ def worth_s(situation: Situation, mint: Mint) -> tuple[float, float]:
         i for i, plan in enumerate(plans_of(mint)[: len(regret_s)]) if plan is None or may_be_flown(situation, plan)
     ]
     acting_s = float((regret_s[flown] @ mass).min()) if flown else float("inf")
-    queries = candidate_queries(mint, start_m=situation.problem.start_m, refused=situation.withdrawn)
+    queries = candidate_queries(
+        mint, start_m=situation.problem.start_m, refused=situation.withdrawn, kinds=situation.settings.kinds
+    )
     rows = [part_row(query, mint.belief)[support] for query in answerable(queries, situation)]
     ahead = _Ahead(regret_s, mass, rows, situation.settings.question_price_s)
     return acting_s, ahead.asking_s(np.ones(support.size, bool), questions_left(situation))
