@@ -6,6 +6,7 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from itertools import combinations
+from types import MappingProxyType
 
 import numpy as np
 
@@ -240,6 +241,11 @@ class Question:
     read_back: Answer | None = None
     """What was understood and takes effect only if it is confirmed now; None: the question itself is asked."""
 
+    def means(self, part: int) -> str:
+        """The consequence of the answer that names that part; empty where none was worded."""
+        means = self.option_means if self.query.is_choice else (self.yes_means, self.no_means)
+        return means[part] if part < len(means) else ""
+
 
 class Reply(StrEnum):
     """What came back. Silence is a reply."""
@@ -291,6 +297,10 @@ class Standing(StrEnum):
     """A plain yes to what was read back."""
 
 
+PARTS = MappingProxyType({Reply.YES: YES_PART, Reply.NO: NO_PART})
+"""The parts of a yes/no query by reply."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Answer:
     """An operator's reaction to one question [y]."""
@@ -319,7 +329,7 @@ class Answer:
     @property
     def part(self) -> int | None:
         """The part of the query that the reply names; None for UNSURE and TIMEOUT."""
-        return {Reply.YES: YES_PART, Reply.NO: NO_PART}.get(self.reply, self.option)
+        return PARTS.get(self.reply, self.option)
 
 
 def answer_for(query: Query, part: int, *, latency_s: float = 0.0, text: str = "") -> Answer:
@@ -334,6 +344,7 @@ __all__ = [
     "MAX_PARTS",
     "NONE_OF_THESE",
     "NO_PART",
+    "PARTS",
     "YES_PART",
     "Answer",
     "Combine",

@@ -14,9 +14,10 @@ from functools import cache
 
 from mintpilot.core.errors import UnknownNameError
 from mintpilot.core.gap import ABSENT, BLOCKED, PASSABLE, PRESENT, GapKind
-from mintpilot.core.query import Order, Question, Reply
+from mintpilot.core.query import MAX_PARTS, Order, Question, Reply
 from mintpilot.core.reading import AnsweredBy, Reading, ReadingKind, opposite, plain_reply
 from mintpilot.language.answer_evidence import evidence_in
+from mintpilot.language.answer_options import option_in
 from mintpilot.language.answer_text import LONGEST, listed, loose, spoken, utterance, vetoes, without_courtesies, words
 from mintpilot.language.answer_words import ANSWER_WORDS, AnswerWords
 
@@ -109,8 +110,12 @@ def _by_key(heard: _Heard, pending: Reply | None) -> Reading:
         reply = _KEYS[key]
         if pending is not None and reply in (Reply.YES, Reply.NO):
             return plain_reply(pending, by="key") if reply is Reply.YES else _denied(heard, pending, by="key")
+        if heard.question.query.is_choice and reply in (Reply.YES, Reply.NO):
+            return Reading(kind=ReadingKind.AGAIN, by="key")
         return plain_reply(reply, by="key")
-    if key in ("1", "2", "3", "4") and pending is None:
+    query = heard.question.query
+    most = query.part_count if query.is_choice else MAX_PARTS
+    if key in map(str, range(1, most + 1)) and pending is None:
         return Reading(kind=ReadingKind.OPTION, option=int(key), by="key")
     return Reading(kind=ReadingKind.AGAIN, by="key")
 
@@ -153,11 +158,23 @@ def _answer(heard: _Heard) -> Reading:
         return Reading(kind=ReadingKind.EVIDENCE, evidence=evidence)
     if heard.text.strip() == "?":
         return plain_reply(Reply.UNSURE)
+    if heard.question.query.is_choice:
+        return _to_choice(heard)
     reading = _listed_reply(heard) or _cautious(heard) or _read_back(heard)
     if reading is not None:
         return reading
     found = dict.fromkeys(v for reply in heard.guarded for v in vetoes(heard.text, heard.lang, reply))
     return replace(_AGAIN, vetoes=tuple(found))
+
+
+def _to_choice(heard: _Heard) -> Reading:
+    """An option of a choice, or that the person does not know; a yes or no is neither."""
+    option = option_in(heard.text, heard.question, heard.lang)
+    if option is not None:
+        return option
+    if not _asks(heard) and words(loose(heard.known.unsure)).search(loose(heard.text)):
+        return plain_reply(Reply.UNSURE)
+    return replace(_AGAIN, vetoes=vetoes(heard.text, heard.lang, Reply.YES))
 
 
 def _listed_reply(heard: _Heard) -> Reading | None:
