@@ -19,7 +19,7 @@ from mintpilot.core.geometry import SmallInts, Vec3, frozen
 from mintpilot.core.mission import QueryKinds
 from mintpilot.core.query import Combine, Literal, Query, Saying, SayingKind, is_refused
 from mintpilot.core.tree import Mint
-from mintpilot.elicitation.choices import choices_about
+from mintpilot.elicitation.choices import chains, choices_about
 from mintpilot.elicitation.partitions import partition_keys
 from mintpilot.elicitation.phrasing_cost import phrasing_cost
 from mintpilot.elicitation.referents import referent_literals
@@ -56,8 +56,18 @@ def gap_literals(gap: KnowledgeGap, start_m: Vec3 | None = None) -> tuple[Litera
             for i in range(1, len(gap.values))
         )
     wanted = PASSABLE if gap.kind is GapKind.OBSTACLE else PRESENT
+    if gap.threshold is not None and wanted in gap.values:
+        return (passable_literal(gap),)
     saying = Saying(kind=SayingKind.VALUE, value=wanted)
     return (Literal(gap=gap.id, values=frozenset({wanted}), saying=saying),) if wanted in gap.values else ()
+
+
+def passable_literal(gap: KnowledgeGap) -> Literal:
+    """That a region may be flown through: said by its threshold where it has one."""
+    saying = Saying(kind=SayingKind.VALUE, value=PASSABLE)
+    if gap.threshold is not None:
+        saying = Saying(kind=SayingKind.THRESHOLD, name=gap.threshold.of, value=gap.threshold.words)
+    return Literal(gap=gap.id, values=frozenset({PASSABLE}), saying=saying)
 
 
 def candidate_queries(
@@ -141,13 +151,23 @@ def _choices(gaps: tuple[KnowledgeGap, ...]) -> _Language:
 
 
 def _queries(literals: dict[str, tuple[Literal, ...]], gaps: Iterable[KnowledgeGap]) -> Iterator[Query]:
-    for several in literals.values():
-        yield from (Query(literals=(literal,)) for literal in several)
+    known = {gap.id: gap for gap in gaps}
+    for name, several in literals.items():
+        if known[name].threshold is None:
+            yield from (Query(literals=(literal,)) for literal in several)
+    for chain in chains(gaps):
+        # To be so high it must be free below, too: one yes says that of each part.
+        said = [passable_literal(gap) for gap in chain]
+        yield from (Query(literals=tuple(said[: n + 1]), combine=Combine.ALL) for n in range(len(said)))
     for gap in gaps:
         if gap.kind is GapKind.TARGET:
             yield from _pairs(literals[gap.id])
     for kind, of_things in ((GapKind.OBSTACLE, False), (GapKind.PRESENCE, False), (GapKind.PRESENCE, True)):
-        same = [literals[g.id][0] for g in gaps if g.kind is kind and g.is_thing is of_things and literals[g.id]]
+        same = [
+            literals[g.id][0]
+            for g in gaps
+            if g.kind is kind and g.is_thing is of_things and literals[g.id] and g.threshold is None
+        ]
         for count in range(2, MAX_TOGETHER + 1):
             for together in combinations(same, count):
                 yield Query(literals=together, combine=Combine.ANY)

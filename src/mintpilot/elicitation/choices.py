@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import combinations
 
 from mintpilot.core.gap import ABSENT, BLOCKED, NOWHERE, PASSABLE, PRESENT, GapKind, KnowledgeGap
@@ -32,9 +32,37 @@ def choices_about(gaps: Sequence[KnowledgeGap]) -> Iterator[Query]:
                     yield from _of(gap, _by_attribute(gap, name, having))
         elif gap.kind is GapKind.VALUE:
             yield from _intervals(gap)
-    for one, other in combinations(gaps, 2):
+    for chain in chains(gaps):
+        if LEAST_PARTS <= len(chain) + 1 <= MAX_PARTS:
+            yield _steps(chain)
+    for one, other in combinations([gap for gap in gaps if gap.threshold is None], 2):
         if one.kind is other.kind and one.kind in _PAIRED and one.is_thing is other.is_thing:
             yield from _both_or_neither(one, other)
+
+
+def chains(gaps: Iterable[KnowledgeGap]) -> list[list[KnowledgeGap]]:
+    """The open gaps of each ordered value, the lowest threshold first."""
+    found: dict[str, list[KnowledgeGap]] = {}
+    for gap in gaps:
+        if gap.threshold is not None and set(gap.values) == {PASSABLE, BLOCKED}:
+            found.setdefault(gap.threshold.of, []).append(gap)
+    return [sorted(found[of], key=_at_least) for of in sorted(found)]
+
+
+def _at_least(gap: KnowledgeGap) -> float:
+    return gap.threshold.at_least_m if gap.threshold is not None else 0.0
+
+
+def _steps(chain: Sequence[KnowledgeGap]) -> Query:
+    """Between which thresholds an ordered value is."""
+    words = [gap.threshold.words for gap in chain if gap.threshold is not None]
+    labels = [f"less than {words[0]}", *map("{} to {}".format, words, words[1:]), f"{words[-1]} or more"]
+    options = []
+    for free, label in enumerate(labels):
+        said = [(gap, PASSABLE) for gap in chain[:free]] + [(gap, BLOCKED) for gap in chain[free : free + 1]]
+        literals = tuple(_literal(gap, (value,), SayingKind.THRESHOLD, "in", label) for gap, value in said)
+        options.append(Option(label=label, literals=literals, combine=Combine.ALL))
+    return Query(options=tuple(options))
 
 
 def _of(gap: KnowledgeGap, options: Sequence[Option]) -> Iterator[Query]:

@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 
 from mintpilot.core.gap import GapKind, KnowledgeGap
 from mintpilot.core.query import Combine, Literal, Query, SayingKind
+from mintpilot.core.threshold import Threshold, ValueKind
 from mintpilot.elicitation.phrases import (
     inset,
     is_adjective,
@@ -56,6 +57,9 @@ def _sentence(query: Query, gaps: Mapping[str, KnowledgeGap], attempt: int, name
     first = attempt % 2 == 1
     if query.is_choice:
         return _choice(query, gaps, first, name)
+    threshold = highest(query, gaps)
+    if threshold is not None:
+        return _threshold(threshold, first)
     subjects = [name(gaps[x.gap]) for x in query.literals]
     kinds = {gaps[x.gap].kind for x in query.literals}
     if kinds == {GapKind.OBSTACLE}:
@@ -75,11 +79,38 @@ def _sentence(query: Query, gaps: Mapping[str, KnowledgeGap], attempt: int, name
     return f"Is it true that {facts}?" if first else f"Is this right: {facts}?"
 
 
+def highest(query: Query, gaps: Mapping[str, KnowledgeGap]) -> Threshold | None:
+    """The largest threshold of a query about one ordered value, joined by *and*; None for other queries."""
+    found = [gaps[x.gap].threshold for x in query.literals if x.saying.kind is SayingKind.THRESHOLD]
+    known = [threshold for threshold in found if threshold is not None]
+    if not known or len(known) < len(query.literals) or len({t.of for t in known}) > 1:
+        return None
+    return max(known, key=lambda threshold: threshold.at_least_m)
+
+
+def _threshold(threshold: Threshold, first: bool) -> str:
+    it, how = _measured(threshold)
+    value = threshold.words
+    return f"Is {it} at least {value} {how}?" if first else f"Is it right that {it} is {value} {how} or more?"
+
+
+def _measured(value: Threshold) -> tuple[str, str]:
+    """What is measured, and the adjective that goes with it."""
+    subject = inset(value.subject)
+    if value.kind is ValueKind.CLEARANCE:
+        return subject, "wide"
+    return f"the lower edge of {subject}", "high"
+
+
 def _choice(query: Query, gaps: Mapping[str, KnowledgeGap], first: bool, name: Callable[[KnowledgeGap], str]) -> str:
     """The options with their numbers, as they stand on screens and are answered by voice."""
     offered = joined([f"{part + 1} {query.part_words(part)}" for part in range(query.part_count)], "or")
     kinds = {gaps[x.gap].kind for x in query.every_literal}
     saying = query.every_literal[0].saying
+    value = gaps[query.every_literal[0].gap].threshold
+    if value is not None:
+        it, how = _measured(value)
+        return f"How {how} is {it}: {offered}?" if first else f"Which is right, how {how} {it} is: {offered}?"
     if kinds == {GapKind.OBSTACLE}:
         return f"Which is safe to fly through: {offered}?" if first else f"What can the drone fly through: {offered}?"
     if kinds == {GapKind.PRESENCE}:

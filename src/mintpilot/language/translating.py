@@ -150,7 +150,7 @@ def _choose(query: Query, gaps: Mapping[str, KnowledgeGap], tongue: Tongue) -> s
 
 def _kind(literal: Literal, gap: KnowledgeGap) -> str:
     """Which sentence says it; empty where none does."""
-    if gap.kind is GapKind.OBSTACLE:
+    if gap.kind is GapKind.OBSTACLE and gap.threshold is None:
         return PASSABLE if literal.values == {PASSABLE} else ""
     if gap.kind is GapKind.PRESENCE:
         return PRESENT if literal.values == {PRESENT} and not gap.is_thing else ""

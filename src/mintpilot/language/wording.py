@@ -93,8 +93,8 @@ class ModelWording:
         threading.Thread(target=read, daemon=True, name="mintpilot warming").start()
 
     def improve(self, question: Question) -> Question:
-        """The question in the model's words, if nothing speaks against them; else as it was, and so is a choice."""
-        if question.query.is_choice:
+        """The question in the model's words, if nothing speaks against them; choices and values stay as they were."""
+        if question.query.is_choice or any(gap.threshold is not None for gap in question.gaps):
             return question
         try:
             prompt = _PROMPT.format(question=question.text)

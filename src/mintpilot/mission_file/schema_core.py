@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from typing import Any
 
 from mintpilot.core.errors import MissionError
 from mintpilot.core.gap import CorrelationGroup
@@ -63,7 +64,7 @@ def limits_of(file: MissionFile) -> VehicleLimits:
 def asking_of(file: MissionFile) -> AskingSettings:
     """Thresholds and bounds."""
     values = file.asking.model_dump(exclude={"strategy_arguments"})
-    kinds = {"rule": CriticalityRule, "while_waiting": WhileWaiting, "kinds": QueryKinds}
+    kinds: dict[str, Any] = {"rule": CriticalityRule, "while_waiting": WhileWaiting, "kinds": QueryKinds}
     return AskingSettings(**{name: kinds[name](value) if name in kinds else value for name, value in values.items()})
 
 
