@@ -19,6 +19,7 @@ from mintpilot.core.reading import AnsweredBy, Reading, ReadingKind, opposite, p
 from mintpilot.language.answer_evidence import evidence_in
 from mintpilot.language.answer_options import option_in
 from mintpilot.language.answer_text import LONGEST, listed, loose, spoken, utterance, vetoes, without_courtesies, words
+from mintpilot.language.answer_values import threshold_of, value_answer
 from mintpilot.language.answer_words import ANSWER_WORDS, AnswerWords
 
 _KEYS = {"y": Reply.YES, "yes": Reply.YES, "n": Reply.NO, "no": Reply.NO, "u": Reply.UNSURE, "unsure": Reply.UNSURE,
@@ -153,6 +154,9 @@ def _denied(heard: _Heard, pending: Reply, *, by: str = "rules") -> Reading:
 
 
 def _answer(heard: _Heard) -> Reading:
+    length = value_answer(heard.text, heard.question)
+    if length is not None:
+        return length
     evidence = evidence_in(heard.text, heard.question, heard.lang, is_voice=heard.by is AnsweredBy.VOICE)
     if evidence:
         return Reading(kind=ReadingKind.EVIDENCE, evidence=evidence)
@@ -259,6 +263,8 @@ def _reply_if(value: str, question: Question) -> Reply | None:
     kind = GapKind.OBSTACLE if value in (PASSABLE, BLOCKED) else GapKind.PRESENCE
     if any(g.kind is not kind for g in question.gaps) or {g.id for g in question.gaps} != set(question.query.gap_ids):
         return None
+    if value == PASSABLE and threshold_of(question) is not None:
+        return None  # "it is safe" says nothing of how wide or how high it is
     if len(question.gaps) > 1 and value in (PASSABLE, ABSENT):
         return None  # of several regions or rooms, "it is safe" does not say which
     return Reply.YES if question.query.holds({gap.id: value for gap in question.gaps}) else Reply.NO
