@@ -49,8 +49,8 @@ def test_a_choice_finds_the_box_in_fewer_questions() -> None:
     outcome, put = fly(lambda answer, question: answer)
     assert outcome is Outcome.SUCCESS
     assert any(question.query.is_choice for question in put)
-    # Four boxes that may be meant take two questions by yes and no.
-    assert len(put[0].gaps[0].values) == 4
+    # Three boxes that may be meant take two questions by yes and no, if the first one is a no.
+    assert len(put[0].gaps[0].values) == 3
     assert len(put) == 1
 
 
