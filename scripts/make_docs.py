@@ -106,6 +106,8 @@ TITLES = {
     "SurveySpec": "survey",
     "PerceptionSpec": "perception",
     "PriorsSpec": "priors",
+    "ValueSpec": "value",
+    "NormalSpec": "normal distribution",
     "CorrelationSpec": "correlation",
     "CombinationSpec": "combination",
     "OperatorSpec": "operator",

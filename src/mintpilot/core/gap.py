@@ -12,6 +12,7 @@ import numpy as np
 from mintpilot.core.errors import MissionError
 from mintpilot.core.geometry import Floats, Vec3, frozen
 from mintpilot.core.observation import Attribute
+from mintpilot.core.threshold import Threshold
 from mintpilot.core.tolerances import SUM_TOLERANCE
 
 PASSABLE = "passable"
@@ -110,6 +111,8 @@ class KnowledgeGap:
     """For a target gap: one per value that is a thing, in the same order."""
     is_thing: bool = False
     """For a presence gap: its subject is a thing that may be somebody, not a place that may hold somebody."""
+    threshold: Threshold | None = None
+    """For an obstacle gap: it is passable exactly where an ordered value is at least this."""
 
     def __post_init__(self) -> None:
         if not self.values or len(set(self.values)) != len(self.values):

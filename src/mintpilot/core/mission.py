@@ -31,6 +31,15 @@ class WhileWaiting(StrEnum):
     """It flies on through known free space, to where the answer will cost least."""
 
 
+class QueryKinds(StrEnum):
+    """Which kinds of query may be put (method, section 13)."""
+
+    YES_NO = "yes-no"
+    """Only what is answered by yes or no."""
+    ANY = "any"
+    """Choices among up to four named options, too."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Bounds:
     """What a setting is, and between which limits."""
@@ -122,6 +131,11 @@ class AskingSettings:
     )
     reply_s: float = setting(
         10.0, "Seconds that a yes or no is expected to take: what the battery may lose meanwhile is weighed.", least=0
+    )
+    kinds: QueryKinds = setting(  # noqa: RUF009  (a field, with its words)
+        QueryKinds.YES_NO,
+        "Which kinds of question are put: those answered by yes or no (`yes-no`), or choices among up to four named "
+        "options as well (`any`), which count 1.6 times as long as a yes or no.",
     )
     while_waiting: WhileWaiting = setting(  # noqa: RUF009  (a field, with its words)
         WhileWaiting.MOVE,

@@ -206,6 +206,9 @@ class QuerySituation:
     """(q, n) the part of each candidate query that holds each joint hypothesis: the true answer."""
     part_count: Ints
     """(q,) the number of parts of each query, 2 to `mintpilot.core.query.MAX_PARTS`."""
+    effort: Floats
+    """(q,) how many times as long as a yes or no the answer to each query takes (`mintpilot.core.query.Query.effort`);
+    the worth of a query counts for the operator's time."""
     settings: AskingSettings
 
 

@@ -45,17 +45,22 @@ def _names(gap: KnowledgeGap) -> Iterator[Literal]:
         yield Literal(gap=gap.id, values=frozenset({value}), saying=Saying(kind=SayingKind.VALUE, value=value))
 
 
-def _attributes(gap: KnowledgeGap) -> Iterator[Literal]:
-    having: dict[tuple[str, str], set[str]] = {}
+def attribute_values(gap: KnowledgeGap) -> dict[str, dict[str, set[str]]]:
+    """The attributes of the candidates by name: each of their values with the candidates that have it."""
+    having: dict[str, dict[str, set[str]]] = {}
     for candidate in gap.candidates:
         for attribute in candidate.attributes:
-            if attribute.value in NOTHING:
-                continue
-            having.setdefault((attribute.name, attribute.value), set()).add(candidate.id)
-    for (name, value), values in sorted(having.items()):
-        if len(values) < len(gap.values):
-            saying = Saying(kind=SayingKind.ATTRIBUTE, name=name, value=value)
-            yield Literal(gap=gap.id, values=frozenset(values), saying=saying)
+            if attribute.value not in NOTHING:
+                having.setdefault(attribute.name, {}).setdefault(attribute.value, set()).add(candidate.id)
+    return having
+
+
+def _attributes(gap: KnowledgeGap) -> Iterator[Literal]:
+    for name, having in sorted(attribute_values(gap).items()):
+        for value, values in sorted(having.items()):
+            if len(values) < len(gap.values):
+                saying = Saying(kind=SayingKind.ATTRIBUTE, name=name, value=value)
+                yield Literal(gap=gap.id, values=frozenset(values), saying=saying)
 
 
 def _relations(gap: KnowledgeGap, start_m: Vec3 | None) -> Iterator[Literal]:

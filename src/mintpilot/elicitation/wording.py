@@ -10,6 +10,7 @@ from mintpilot.core.gap import NOWHERE, PASSABLE, GapKind, KnowledgeGap
 from mintpilot.core.geometry import Bools
 from mintpilot.core.plan import Plan
 from mintpilot.core.query import NO_PART, YES_PART, Query, Question
+from mintpilot.core.threshold import ValueKind
 from mintpilot.core.tolerances import TOLERANCE
 from mintpilot.core.tree import Mint
 from mintpilot.elicitation.phrases import joined, subject_of, thing_called
@@ -123,6 +124,10 @@ def _flight(plan: Plan | None, sure: bool, about: tuple[KnowledgeGap, ...], left
     kinds = {g.kind for g in about}
     if kinds == {GapKind.OBSTACLE}:
         entered = [g for g in about if g.id in plan.enters]
+        value = about[0].threshold
+        if value is not None and {g.threshold.of if g.threshold else "" for g in about} == {value.of}:
+            through = "through" if value.kind is ValueKind.CLEARANCE else "under"
+            return f"{i} fly {through if entered else 'around'} it"
         if not entered:
             return f"{i} fly around {'it' if len(about) == 1 else 'them'}"
         return f"{i} fly through {'it' if len(about) == 1 else joined([subject_of(g) for g in entered], 'and')}"

@@ -24,7 +24,7 @@ from mintpilot.mission_file.schema_base import (
     ThinkWords,
     Words,
 )
-from mintpilot.mission_file.schema_world import World
+from mintpilot.mission_file.schema_world import ValueSpec, World
 
 SCHEMA_VERSION = 1
 
@@ -209,6 +209,8 @@ class MissionFile(Spec):
     """The flight that makes the map; not for worlds given as a map."""
     priors: PriorsSpec = PriorsSpec()
     """For regions and rooms that name none."""
+    values: Several[ValueSpec] = ()
+    """Ordered values of regions of a given map: how wide a passage is, how high smoke hangs."""
     correlations: Several[CorrelationSpec] = ()
     """Gaps whose priors do not multiply."""
     operator: OperatorSpec = OperatorSpec()

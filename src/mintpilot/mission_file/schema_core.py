@@ -4,11 +4,20 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from typing import Any
 
 from mintpilot.core.errors import MissionError
 from mintpilot.core.gap import CorrelationGroup
 from mintpilot.core.geometry import Box, Vec3
-from mintpilot.core.mission import AskingSettings, CriticalityRule, Mission, ReturnRule, SurveySettings, WhileWaiting
+from mintpilot.core.mission import (
+    AskingSettings,
+    CriticalityRule,
+    Mission,
+    QueryKinds,
+    ReturnRule,
+    SurveySettings,
+    WhileWaiting,
+)
 from mintpilot.core.plan import VehicleLimits
 from mintpilot.core.task import Action, Reference, SubGoal, Task
 from mintpilot.mission_file.geodetic_places import georeference_of
@@ -55,9 +64,8 @@ def limits_of(file: MissionFile) -> VehicleLimits:
 def asking_of(file: MissionFile) -> AskingSettings:
     """Thresholds and bounds."""
     values = file.asking.model_dump(exclude={"strategy_arguments"})
-    return AskingSettings(
-        **{**values, "rule": CriticalityRule(values["rule"]), "while_waiting": WhileWaiting(values["while_waiting"])}
-    )
+    kinds: dict[str, Any] = {"rule": CriticalityRule, "while_waiting": WhileWaiting, "kinds": QueryKinds}
+    return AskingSettings(**{name: kinds[name](value) if name in kinds else value for name, value in values.items()})
 
 
 def correlations_of(file: MissionFile) -> tuple[CorrelationGroup, ...]:

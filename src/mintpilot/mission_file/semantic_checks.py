@@ -15,6 +15,7 @@ from mintpilot.mission_file.schema_world import MapWorld, SceneWorld, SeenWorld
 from mintpilot.mission_file.semantic_checks_map import map_faults
 from mintpilot.mission_file.semantic_checks_scene import scene_faults
 from mintpilot.mission_file.semantic_checks_seen import seen_faults
+from mintpilot.mission_file.values import value_faults
 from mintpilot.mission_file.yaml_places import Fault, Path_
 
 _VALUES = {GapKind.OBSTACLE: (PASSABLE, BLOCKED), GapKind.PRESENCE: (PRESENT, ABSENT)}
@@ -25,6 +26,7 @@ def contradictions(mission: MissionFile, base: Path) -> Iterator[Fault]:
     yield from _goal_faults(mission)
     yield from _truth_faults(mission)
     yield from _correlation_faults(mission)
+    yield from value_faults(mission)
     if isinstance(mission.world, MapWorld | SeenWorld) and mission.survey is not None:
         yield _fault(("survey",), "a given map needs no survey flight; remove 'survey'")
     if isinstance(mission.world, MapWorld):
