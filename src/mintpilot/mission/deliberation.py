@@ -32,6 +32,8 @@ from mintpilot.elicitation.wording import word_question
 from mintpilot.mapping.knowledge import apply_knowledge
 from mintpilot.mission.belief_state import BeliefState, remaining_budget
 from mintpilot.mission.explanations import explanations
+from mintpilot.mission.looking import look_options
+from mintpilot.mission.unseen import SEARCH, with_search
 from mintpilot.reasoning.belief import extend
 from mintpilot.reasoning.waiting import longest_wait_s, spare_s
 from mintpilot.strategies.flying import cautious_plan
@@ -246,9 +248,11 @@ def _deliberate(
         belief=belief,
         home_m=mission.start_m if mission.returns is ReturnRule.REQUIRED else None,
     )
+    space = parts.planner.open(problem)
     situation = Situation(
         problem=problem,
-        space=parts.planner.open(problem),
+        space=space,
+        looks=look_options(problem, space, parts.planner, mission.looks, state.finished) if mission.looks else (),
         belief=belief,
         confirmed=state.confirmed,
         withdrawn=state.withdrawn,
@@ -273,7 +277,12 @@ def _gaps_of(
         finished=state.finished,
         honour_wishes=honour_wishes,
     )
-    return findings, extend(state.belief, findings.gaps, parts.groups, max_joint=parts.settings.max_joint)
+    belief, mission = state.belief, parts.mission
+    if findings.sought and mission.survey is not None:
+        findings = with_search(findings, state.map, mission.limits, start_m, state.finished)
+        if all(SEARCH not in one.query.gap_ids for one in state.asked):
+            belief = Belief(factors=tuple(f for f in belief.factors if SEARCH not in {g.id for g in f.gaps}))
+    return findings, extend(belief, findings.gaps, parts.groups, max_joint=parts.settings.max_joint)
 
 
 def _wishes(state: BeliefState, parts: DeliberationParts, start_m: Vec3) -> bool:

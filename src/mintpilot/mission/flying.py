@@ -14,7 +14,9 @@ from mintpilot.core.task import Action
 from mintpilot.mission.outlasting import outlasted
 from mintpilot.mission.requests import Purpose
 from mintpilot.mission.state import Activity, Ending, Goal, uncertain_things
+from mintpilot.mission.surveying import SWEEP_RAD, turn
 from mintpilot.mission.transition import Transition, partial_reason
+from mintpilot.mission.unseen import is_search
 
 MAX_REPLANS = 8
 """How often news in flight may send the drone back to deliberating before it goes home."""
@@ -100,7 +102,11 @@ def plan_again(t: Transition) -> None:
 
 def arrived(t: Transition) -> None:
     """At the stop: does what it is for."""
-    t.act(_leg(t).stop)
+    stop, vehicle = _leg(t).stop, t.state.vehicle
+    if is_search(stop):
+        t.follow(turn(np.asarray(vehicle.position_m), vehicle.yaw_rad, SWEEP_RAD), Activity.ACT)
+    else:
+        t.act(stop)
 
 
 def fulfilled(t: Transition) -> None:
@@ -110,7 +116,11 @@ def fulfilled(t: Transition) -> None:
         beliefs = replace(beliefs, map=beliefs.map.with_room(leg.site.label, searched=True))
     t.set(beliefs=beliefs, leg=t.state.leg + 1)
     mark_done(t, leg.stop)
-    next_leg(t)
+    if leg.stop.informs:
+        t.set(plan=None)
+        t.request(Purpose.MISSION)
+    else:
+        next_leg(t)
 
 
 def mark_done(t: Transition, stop: Stop) -> None:

@@ -37,6 +37,8 @@ class Binding:
     stops: list[Stop] = field(default_factory=list)
     gaps: dict[str, KnowledgeGap] = field(default_factory=dict)
     problems: list[str] = field(default_factory=list)
+    unmatched: list[str] = field(default_factory=list)
+    """Phrases that match nothing which was seen."""
 
     def one(self, stop_id: str, subgoal: SubGoal, reference: Reference, first: int) -> None:
         """Binds a sub-goal that means one thing; ``first`` is the number of the first one with this reference."""
@@ -82,6 +84,8 @@ class Binding:
         label = reference.label
         alike = [t for t in self.things if synonyms(t.label) & synonyms(label)] if label else []
         wanted = reference.object_id or reference.phrase
+        if not reference.object_id:
+            self.unmatched.append(reference.phrase)
         self.problems.append(f"Nothing on the map matches '{wanted}'. Seen was {seen(alike or self.things)}.")
         return ()
 
