@@ -81,7 +81,8 @@ def with_search(
         for zone in zones
     )
     gaps = tuple(sorted((*findings.gaps, gap), key=lambda one: one.id))
-    return replace(findings, gaps=gaps, stops=(*findings.stops, *looks), problems=())
+    left = tuple(problem for problem in findings.problems if problem not in findings.unseen)
+    return replace(findings, gaps=gaps, stops=(*findings.stops, *looks), problems=left)
 
 
 def unseen_zones(

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from mintpilot.core.errors import InputError
 from mintpilot.core.gap import PRESENT, Belief, GapKind, KnowledgeGap
 from mintpilot.core.geometry import Vec3
-from mintpilot.core.observation import RegionKind
+from mintpilot.core.observation import PERSON, RegionKind
 from mintpilot.core.plan import PRICE_S, PlanningProblem, Stop, VehicleLimits
 from mintpilot.core.semantic_map import Knowledge, Region, SemanticMap
 from mintpilot.core.task import Task
@@ -18,7 +18,7 @@ from mintpilot.uncertainty.doubts import is_doubtful_person
 from mintpilot.uncertainty.gaps import obstacle_gaps, people_gaps, presence_gaps
 from mintpilot.uncertainty.keep_away import PREFIX
 from mintpilot.uncertainty.matching import Standpoint
-from mintpilot.uncertainty.targets import PERSON, Binding, bind
+from mintpilot.uncertainty.targets import Binding, bind
 from mintpilot.uncertainty.things import Thing, stands_for, things_of
 
 SOMEBODY = "somebody who needs help"
@@ -37,6 +37,8 @@ class Findings:
     """A plain sentence for each reference that matches nothing, with what was seen instead."""
     sought: str = ""
     """What is sought and on no map yet, in plain words; empty where all that is sought was seen."""
+    unseen: tuple[str, ...] = ()
+    """Those of the problems that end once more was seen."""
     wishes: tuple[str, ...] = ()
     """Ids of open regions that are stayed out of only because the person wished so. Where nothing can be flown,
     `find_gaps` with ``honour_wishes=False`` lets them be asked about."""
@@ -96,6 +98,7 @@ def find_gaps(
         stops=tuple(_on_layer(stop, map) for stop in stops),
         problems=tuple(dict.fromkeys((*bound.problems, *_heights(task, map)))),
         sought=_sought(task, things, bound),
+        unseen=tuple(bound.unmatched.values()),
         wishes=tuple(sorted(r.id for r in map.regions if _is_wish(r, wished) and r.passable is Knowledge.OPEN)),
     )
 
@@ -103,7 +106,7 @@ def find_gaps(
 def _sought(task: Task, things: Sequence[Thing], bound: Binding) -> str:
     """What matches nothing that was seen; of people whoever needs help, while nobody was seen for certain."""
     if bound.unmatched:
-        return bound.unmatched[0]
+        return next(iter(bound.unmatched))
     seen = any(stands_for(t.label, PERSON) and not is_doubtful_person(t) for t in things)
     return "" if seen or not task.seeks_people else SOMEBODY
 

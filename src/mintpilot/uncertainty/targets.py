@@ -8,6 +8,7 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field
 
 from mintpilot.core.gap import NOWHERE, Candidate, GapKind, KnowledgeGap, target_id
+from mintpilot.core.observation import PERSON
 from mintpilot.core.plan import Site, Stop
 from mintpilot.core.task import Action, Reference, SubGoal, Task
 from mintpilot.uncertainty.describing import describe_apart, seen
@@ -20,7 +21,6 @@ _REACH_M = {Action.PICK: 1.2, Action.COUNT: 2.5, Action.PHOTOGRAPH: 2.5, Action.
 """From how far a step can be done where that is not `_NEAR_M`, metres."""
 _NEAR_M = 1.5
 _POSITION_REACH_M = 0.75
-PERSON = "person"
 _PRONOUNS = frozenset({"it", "him", "her", "them", "there", "that", "this", "one"})
 
 
@@ -37,8 +37,8 @@ class Binding:
     stops: list[Stop] = field(default_factory=list)
     gaps: dict[str, KnowledgeGap] = field(default_factory=dict)
     problems: list[str] = field(default_factory=list)
-    unmatched: list[str] = field(default_factory=list)
-    """Phrases that match nothing which was seen."""
+    unmatched: dict[str, str] = field(default_factory=dict)
+    """Phrases that match nothing which was seen, with the problem that says so."""
 
     def one(self, stop_id: str, subgoal: SubGoal, reference: Reference, first: int) -> None:
         """Binds a sub-goal that means one thing; ``first`` is the number of the first one with this reference."""
@@ -84,9 +84,9 @@ class Binding:
         label = reference.label
         alike = [t for t in self.things if synonyms(t.label) & synonyms(label)] if label else []
         wanted = reference.object_id or reference.phrase
-        if not reference.object_id:
-            self.unmatched.append(reference.phrase)
         self.problems.append(f"Nothing on the map matches '{wanted}'. Seen was {seen(alike or self.things)}.")
+        if not reference.object_id:
+            self.unmatched[reference.phrase] = self.problems[-1]
         return ()
 
 
