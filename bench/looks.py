@@ -20,6 +20,8 @@ WAYS = {
     "neither": {"looks": [], "asking": {"max_questions": 0}},
 }
 EXAMPLES = 6
+DEEP_M = 30.0
+"""Depth of the hall, metres: ways round are long enough to be worth a look or a question."""
 REPLY_S = 10.0
 
 
@@ -28,9 +30,9 @@ def mission(seed: int) -> dict[str, object]:
     rng = np.random.default_rng([seed, 29])
     solids, smokes, looks = [], [], []
     for number in range(1, 4):
-        x, gate = 6.0 * number, float(rng.uniform(2, 10))
-        end = 12.0 if gate < 6 else 0.0
-        spans = ((0.0 if end else 2.5, gate - 1), (gate + 1, 9.5 if end else 12.0))
+        x, gate = 6.0 * number, float(rng.uniform(3, DEEP_M - 3))
+        far = gate < DEEP_M / 2  # the way round is at the other end
+        spans = ((0.0 if far else 2.5, gate - 1), (gate + 1, DEEP_M - 2.5 if far else DEEP_M))
         solids += [
             {"id": f"w{number}{i}", "kind": "wall", "extent_m": {"lo_m": [x, a, 0], "hi_m": [x + 0.2, b, 2.6]}}
             for i, (a, b) in enumerate(spans)
@@ -49,11 +51,11 @@ def mission(seed: int) -> dict[str, object]:
         "instruction": "Go to the injured person.",
         "world": {
             "scene": {
-                "volume": {"lo_m": [0, 0, 0], "hi_m": [24, 12, 2.6]},
-                "start_m": [2, 6, 1.2],
+                "volume": {"lo_m": [0, 0, 0], "hi_m": [24, DEEP_M, 2.6]},
+                "start_m": [2, DEEP_M / 2, 1.2],
                 "solids": solids,
                 "smokes": smokes,
-                "persons": [{"id": "p1", "position_m": [22, 6, 0]}],
+                "persons": [{"id": "p1", "position_m": [22, DEEP_M / 2, 0]}],
             }
         },
         "looks": looks,
@@ -111,7 +113,7 @@ def main() -> None:
         name="41-looks",
         title="Look or ask",
         command=f"python -m bench.looks --worlds {args.worlds}",
-        how="Halls with three walls across, a gate full of smoke (toxic with probability 0.5) and a way round in each, "
+        how=f"Halls {DEEP_M:g} m deep with three walls across, a gate full of smoke (toxic with probability 0.5) and a way round in each, "
         "kinematic. Each cloud can be looked at from 1.6 to 2.6 m before it, for 1 to 8 s, seeing with probability 0.3 "
         f"to 1, all drawn. The person takes {REPLY_S:g} s for an answer, and the drone knows that.",
         tables=[

@@ -9,7 +9,7 @@ import numpy as np
 from mintpilot.core.decisions import FlyPlan, FlyTrajectory, GoBack, RefuseFlight
 from mintpilot.core.inputs import Link, MapObserved
 from mintpilot.core.mission import Achieved, Outcome, ReturnRule
-from mintpilot.core.plan import Leg, Plan, Stop
+from mintpilot.core.plan import LeftUndone, Leg, Plan, Stop
 from mintpilot.core.task import Action
 from mintpilot.mission.outlasting import outlasted
 from mintpilot.mission.requests import Purpose
@@ -61,9 +61,16 @@ def _done(t: Transition) -> Ending:
 def chosen(t: Transition, decision: FlyPlan) -> None:
     """The asking is over: flies the plan, or goes home where there is none that may be flown."""
     if decision.plan is None:
+        nothing(t, decision.left)
         t.give_up(decision.certificate.text)
     else:
         fly_plan(t, decision.plan, unsafe=decision.unsafe)
+
+
+def nothing(t: Transition, left: tuple[LeftUndone, ...]) -> None:
+    """Nothing of these stops can be flown: they are kept with the reasons, beside what was wanted before."""
+    wanted = {stop.id: stop for stop in (*t.state.wanted, *(one.stop for one in left))}
+    t.set(plan=None, undone=left, wanted=tuple(wanted.values()))
 
 
 def fly_leg(t: Transition, decision: FlyTrajectory) -> None:

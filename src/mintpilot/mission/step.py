@@ -260,6 +260,7 @@ def _deliberated(t: Transition, event: DeliberationEnded) -> None:
             meanwhile.count(t, decision)
             flying.chosen(t, decision)
         case NoPlan():
+            flying.nothing(t, decision.left)
             t.give_up(decision.reason)
         case FlyTrajectory():
             if t.state.goal is Goal.HOLD:
