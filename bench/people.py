@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import argparse
 from collections import Counter
+from dataclasses import replace
 from pathlib import Path
 
 from bench.sections import Section, Table, keep
@@ -89,9 +90,10 @@ def main() -> None:
     arguments = argparse.ArgumentParser(description=__doc__)
     arguments.add_argument("records", type=Path)
     arguments.add_argument("--pictures", type=Path, default=None)
+    arguments.add_argument("--note", action="append", default=[], help="a sentence to be kept with the figures")
     given = arguments.parse_args()
     made, seeds = section(given.records)
-    keep(made)
+    keep(replace(made, notes=[*made.notes, *given.note]))
     for seed in seeds if given.pictures is not None else ():
         fly_again(seed, given.pictures)
 
