@@ -91,6 +91,7 @@ TITLES = {
     "GeoreferenceSpec": "georeference",
     "SceneSpec": "scene",
     "KeepAwaySpec": "distance to be kept",
+    "LookSpec": "look",
     "SolidSpec": "solid",
     "SmokeSpec": "smoke",
     "PersonSpec": "person",

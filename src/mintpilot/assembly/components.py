@@ -13,6 +13,7 @@ import numpy as np
 
 from mintpilot.assembly.briefing import briefing_of
 from mintpilot.assembly.policies import make_metric, make_planner
+from mintpilot.assembly.stated_looks import with_stated_looks
 from mintpilot.assembly.strategies import Argument, make_objective, make_strategy, strategy_label
 from mintpilot.assembly.talk import Talk
 from mintpilot.assembly.worlds import World
@@ -207,6 +208,8 @@ class _Components(AbstractContextManager[MissionComponents]):
         given: MapSource = GivenMap(world.map)
         if not world.is_map:
             given = SceneMapSource(world.scene, world.map, kinematic.state)
+        if world.mission.looks:
+            given = with_stated_looks(given, world, kinematic.state)
         changes = any(solid.appears_s > 0 for solid in world.scene.solids)
         return self._made(kinematic, given, surveys=False, watch_map=changes)
 

@@ -10,7 +10,7 @@ from typing import Any
 from mintpilot.core.errors import MissionError
 from mintpilot.core.geometry import Box, Vec3
 from mintpilot.core.georeference import Georeference
-from mintpilot.core.plan import LeftUndone, VehicleLimits
+from mintpilot.core.plan import LeftUndone, Look, VehicleLimits
 
 
 class CriticalityRule(StrEnum):
@@ -221,6 +221,8 @@ class Mission:
     """Where the map lies on the earth; None: not known."""
     people_price_s: float | None = None
     """What leaving somebody unseen costs, seconds of flight; None: ``asking.failure_price_s``."""
+    looks: tuple[Look, ...] = ()
+    """From where gaps can be settled by looking."""
     returns: ReturnRule = ReturnRule.NONE
     """Whether the drone flies back to the start once its task is done."""
 

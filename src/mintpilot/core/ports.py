@@ -17,7 +17,7 @@ from mintpilot.core.inputs import OperatorInput, VehicleInput
 from mintpilot.core.mission import AskingSettings, Verdict
 from mintpilot.core.motion import Motion
 from mintpilot.core.observation import Detection, Frame, NameGuess, RawFrame, Segment
-from mintpilot.core.plan import Plan, PlanningProblem
+from mintpilot.core.plan import Look, Plan, PlanningProblem
 from mintpilot.core.policy import PolicyState
 from mintpilot.core.query import Evidence, Query, Question, Reply
 from mintpilot.core.reading import AnsweredBy, Reading
@@ -238,6 +238,17 @@ class Proposer(Protocol):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class LookOption:
+    """A look that may be taken from here."""
+
+    look: Look
+    seconds: float
+    """What it costs beside the plan: the flight there, the stay, and what the rest is dearer from there."""
+    plan: Plan
+    """The flight there and the stay."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Situation:
     """What a strategy decides on."""
 
@@ -259,6 +270,8 @@ class Situation:
     objective: QueryObjective
     proposer: Proposer | None = None
     """Whom a strategy may ask for queries that it does not find by itself; None: nobody."""
+    looks: tuple[LookOption, ...] = ()
+    """Looks that compete with queries (method, section 11)."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from mintpilot.core.gap import NOWHERE, Candidate, KnowledgeGap
+from mintpilot.core.gap import NO_THING, Candidate, KnowledgeGap
 from mintpilot.core.geometry import Vec3
 from mintpilot.core.query import Literal, Saying, SayingKind
 
@@ -40,7 +40,7 @@ def name_of(candidate: Candidate) -> str:
 
 def _names(gap: KnowledgeGap) -> Iterator[Literal]:
     for value in gap.values:
-        if value in NOWHERE:
+        if value in NO_THING:
             continue
         yield Literal(gap=gap.id, values=frozenset({value}), saying=Saying(kind=SayingKind.VALUE, value=value))
 

@@ -162,6 +162,8 @@ def _referent(query: Query, gap: KnowledgeGap, first: bool) -> str:
     word = "and" if query.combine is Combine.ALL else "or"
     if kinds == {SayingKind.VALUE}:
         things = joined([thing_called(gap, x.saying.value) for x in query.literals], word)
+        if gap.is_search:
+            return f"Is {gap.subject} in {things}?" if first else f"Is this where {gap.subject} is: {things}?"
         return f"Is it {things}?" if first else f"Do you mean {things}?"
     if kinds == {SayingKind.RELATION} and len(query.literals) == 1:
         saying = query.literals[0].saying

@@ -135,6 +135,19 @@ class KeepAwaySpec(Spec):
     """How far, metres, between the drone's body and it."""
 
 
+class LookSpec(Spec):
+    """A place from which it can be seen whether a region is passable. What a look tells is as good as an answer."""
+
+    at: Name
+    """Id of the region."""
+    viewpoint_m: Place
+    """From where."""
+    dwell_s: Duration = 2.0
+    """How long the drone stays there, seconds."""
+    sees: Annotated[float, Field(gt=0, le=1)] = 1.0
+    """Probability that the look settles it; else it tells nothing, and is not tried again."""
+
+
 class CombinationSpec(Spec):
     """One combination of values with its probability."""
 
@@ -195,6 +208,9 @@ class MissionFile(Spec):
     """True when everybody who is hurt must be found. Default: as the instruction says."""
     keep_away: Several[KeepAwaySpec] = ()
     """Distances to be kept from people, things or regions, besides those that the instruction names."""
+    looks: Several[LookSpec] = ()
+    """From where regions can be looked at: a look competes with questions by what it tells a second
+    (`asking.reply_s`). On given maps and with the kinematic simulator; a camera sees by itself."""
     people_price_s: NotNegative | None = None
     """What leaving somebody unseen costs, seconds of flight; default: `asking.failure_price_s`."""
     vehicle: VehicleSpec = VehicleSpec()

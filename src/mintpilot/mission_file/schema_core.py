@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from mintpilot.core.errors import MissionError
-from mintpilot.core.gap import CorrelationGroup
+from mintpilot.core.gap import CorrelationGroup, obstacle_id
 from mintpilot.core.geometry import Box, Vec3
 from mintpilot.core.mission import (
     AskingSettings,
@@ -18,7 +18,7 @@ from mintpilot.core.mission import (
     SurveySettings,
     WhileWaiting,
 )
-from mintpilot.core.plan import VehicleLimits
+from mintpilot.core.plan import Look, VehicleLimits
 from mintpilot.core.task import Action, Reference, SubGoal, Task
 from mintpilot.mission_file.geodetic_places import georeference_of
 from mintpilot.mission_file.schema import GoalSpec, MissionFile
@@ -47,6 +47,15 @@ def mission_of(file: MissionFile, *, start_m: Vec3, volume: Box) -> Mission:
         survey=None if isinstance(file.world, MapWorld) else SurveySettings(**survey),
         prior_passable=file.priors.passable,
         prior_occupied=file.priors.occupied,
+        looks=tuple(
+            Look(
+                gap=obstacle_id(look.at),
+                viewpoint_m=place_of(look.viewpoint_m, start_m[2]),
+                dwell_s=look.dwell_s,
+                sees=look.sees,
+            )
+            for look in file.looks
+        ),
         people_price_s=file.people_price_s,
         returns=ReturnRule(file.vehicle.returns),
         georeference=None if file.world.georeference is None else georeference_of(file.world.georeference),
