@@ -14,6 +14,7 @@ from mintpilot.core.plan import Plan
 from mintpilot.core.query import Answer, Order, Question
 from mintpilot.core.semantic_map import SemanticMap
 from mintpilot.core.task import Task
+from mintpilot.core.told import ToldFact
 from mintpilot.core.trajectory import FlightLog, Trajectory
 from mintpilot.core.tree import Certificate, GapExplanation, Mint, ScoredQuery
 
@@ -130,6 +131,14 @@ class OrderTaken:
     """Mission clock."""
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FactsChanged:
+    """An operator told something, confirmed it or took it back; or it lapsed."""
+
+    told: tuple[ToldFact, ...]
+    """All that was told so far, oldest first."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Stepped:
     """One step of the mission: what happened, and a digest of what it made the mission do."""
@@ -176,6 +185,7 @@ Event: TypeAlias = (
     | PlanChosen
     | LegFlown
     | OrderTaken
+    | FactsChanged
     | Stepped
     | Noticed
     | Timed

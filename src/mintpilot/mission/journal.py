@@ -10,6 +10,7 @@ from mintpilot.core.events import (
     Asked,
     Deliberated,
     Event,
+    FactsChanged,
     LegFlown,
     MapUpdated,
     Noticed,
@@ -87,6 +88,8 @@ class Journal:
                 )
             case _:
                 pass
+        if after.told is not before.told:
+            yield FactsChanged(told=tuple(one.known for one in after.told))
         yield from _asked(before, event, after)
         for directive in directives:
             if isinstance(directive, Note):

@@ -8,6 +8,7 @@ from mintpilot.core.events import (
     Asked,
     Deliberated,
     Event,
+    FactsChanged,
     FrameSeen,
     LegFlown,
     MapUpdated,
@@ -64,7 +65,7 @@ class History:
                 self.notices.append(event)
             case OrderTaken():
                 self.orders.append(event)
-            case Stepped():
+            case Stepped() | FactsChanged():
                 pass
             case Timed():
                 self.timings_s[event.stage] = self.timings_s.get(event.stage, 0.0) + event.seconds
