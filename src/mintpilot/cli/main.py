@@ -441,6 +441,7 @@ def doctor(*, audio: Flag = False, json: Json = False, debug: Flag = False) -> E
 @app.command(
     help_epilogue=examples(
         "mintpilot replay runs/2026-11-28T10-00-00-fire-warehouse",
+        "mintpilot replay runs/2026-11-28T10-00-00-fire-warehouse --page",
         "mintpilot replay runs/2026-11-28T10-00-00-fire-warehouse --verify",
     )
 )
@@ -449,21 +450,32 @@ def replay(
     /,
     *,
     verify: Flag = False,
+    page: bool | None = None,
+    port: int = 0,
     json: Json = False,
     debug: Flag = False,
 ) -> ExitCode:
     """Show a recorded mission again, or think it through again and compare.
 
+    It prints the report, and opens the console's page on the run, finished or broken off: any moment of it, with the
+    map, the questions, the tree and the log as they were. Nothing can be answered there.
+
     Args:
         run: The run folder.
         verify: Feed the recorded events to the mission again: every step must be equal bit for bit, every deliberation
             within 1e-9. The first difference is shown with the event before it.
+        page: Serve the page until Ctrl-C. Default: where a browser can be opened.
+        port: Of the page. Default: any that is free.
         json: Print one JSON object, and nothing else, on standard output.
         debug: Show the traceback of an error.
     """
     from mintpilot.cli.replaying import replay_run
 
-    return guarded(lambda: replay_run(run, verify=verify, as_json=json), as_json=json, debug=debug)
+    if page and (verify or json):
+        return fail("--page shows a run to a person: give it without --verify and --json", as_json=json)
+    return guarded(
+        lambda: replay_run(run, verify=verify, page=page, port=port, as_json=json), as_json=json, debug=debug
+    )
 
 
 app.command(bench)

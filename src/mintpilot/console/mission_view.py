@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
-from mintpilot.console.board import Board
+from mintpilot.console.board import Panes
 from mintpilot.console.map_pane import map_pane
-from mintpilot.console.pictures import Pictures
+from mintpilot.console.pictures import Pictures, as_jpeg
 from mintpilot.console.protocol import (
     AnswerLine,
     FlownPoint,
@@ -20,12 +21,14 @@ from mintpilot.console.protocol import (
 )
 from mintpilot.console.question_pane import path_points, question_pane
 from mintpilot.console.steps import Progress
+from mintpilot.console.told_pane import told_pane
 from mintpilot.console.tree_pane import tree_pane
 from mintpilot.core.decisions import AskQuestion, Explore, FlyPlan, FlyTrajectory, GoBack
 from mintpilot.core.events import (
     Asked,
     Deliberated,
     Event,
+    FactsChanged,
     FrameSeen,
     LegFlown,
     MapUpdated,
@@ -66,11 +69,12 @@ class MissionView:
 
     Args:
         board: where the panes stand.
+        jpeg_of: the picture of an event; None: there is none any more.
     """
 
-    def __init__(self, board: Board) -> None:
+    def __init__(self, board: Panes, jpeg_of: Callable[[FrameSeen], bytes | None] = as_jpeg) -> None:
         self._board = board
-        self._pictures = Pictures(board)
+        self._pictures = Pictures(board, jpeg_of)
         self._started: MissionStarted | None = None
         self._map: SemanticMap | None = None
         self._drawn_s = -math.inf
@@ -145,6 +149,8 @@ class MissionView:
                 self._log("order", f"{event.order.value}: {event.answer}" if event.answer else event.order.value)
             case Noticed():
                 self._log("note", event.text)
+            case FactsChanged():
+                self._board.put("told", told_pane(event))
             case MissionEnded():
                 self._ended(event)
             case _:
@@ -160,6 +166,7 @@ class MissionView:
     def _mission(self, verdict: str = "", reason: str = "") -> None:
         assert self._started is not None
         mission = self._started.mission
+        (left, bottom, _), (right, top, _) = mission.volume.lo_m, mission.volume.hi_m
         self._board.put(
             "mission",
             MissionPane(
@@ -168,6 +175,7 @@ class MissionView:
                 lang=self._started.language,
                 strategy=self._started.strategy,
                 start=mission.start_m,
+                volume=(left, bottom, right, top),
                 briefing=self._started.briefing.lines if self._started.briefing is not None else (),
                 verdict=verdict,
                 reason=reason,

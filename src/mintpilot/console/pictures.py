@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import io
 from collections import OrderedDict
+from collections.abc import Callable
 
-from mintpilot.console.board import Board
+from mintpilot.console.board import Panes
 from mintpilot.console.protocol import PictureBox, PicturePane
 from mintpilot.core.events import FrameSeen
 from mintpilot.core.query import Question
@@ -18,31 +19,40 @@ MOST_SHOWN = 4
 _QUALITY = 80
 
 
+def as_jpeg(event: FrameSeen) -> bytes | None:
+    """The picture that was just taken."""
+    from PIL import Image
+
+    out = io.BytesIO()
+    Image.fromarray(event.frame.rgb).save(out, "JPEG", quality=_QUALITY)
+    return out.getvalue()
+
+
 class Pictures:
     """Keeps the pictures of one mission as JPEG.
 
     Args:
         board: where they are shown.
+        jpeg_of: the picture of an event; None: there is none any more.
     """
 
-    def __init__(self, board: Board) -> None:
-        self._board = board
+    def __init__(self, board: Panes, jpeg_of: Callable[[FrameSeen], bytes | None] = as_jpeg) -> None:
+        self._board, self._jpeg_of = board, jpeg_of
         self._kept: OrderedDict[int, tuple[float, bytes]] = OrderedDict()
 
     def seen(self, event: FrameSeen) -> None:
         """A new picture, with what was found in it."""
-        from PIL import Image
-
-        out = io.BytesIO()
-        Image.fromarray(event.frame.rgb).save(out, "JPEG", quality=_QUALITY)
-        self._kept[event.index] = (event.frame.time_s, out.getvalue())
+        jpeg = self._jpeg_of(event)
+        if jpeg is None:
+            return
+        self._kept[event.index] = (event.frame.time_s, jpeg)
         if len(self._kept) > MOST_KEPT:
             self._kept.popitem(last=False)
         boxes = tuple(
             PictureBox(id="", words=d.label, box=_box(d.pixels)) for d in event.detections if d.pixels[2] > d.pixels[0]
         )
         pane = PicturePane(frame=event.index, time_s=round(event.frame.time_s, 2), boxes=boxes)
-        self._board.put("camera", pane, out.getvalue())
+        self._board.put("camera", pane, jpeg)
 
     def about(self, question: Question, map: SemanticMap | None) -> None:
         """The pictures in which the things are that the question is about, with their outlines."""

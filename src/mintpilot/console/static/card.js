@@ -18,6 +18,7 @@ export class Card {
   get open() { return this.#question?.id ? this.#question : null; }
 
   setMay(may) { if (may !== this.#may) { this.#may = may; this.draw(); } }
+  hold() { this.#held = true; } // time passes only as it is told
   setClock(time_s) { this.#clock = { time_s, at: performance.now() }; }
 
   set(question) {
@@ -184,7 +185,7 @@ export class Card {
   #count() {
     const q = this.open;
     if (!q || !this.#clock || !$("left")) return;
-    const passed = Math.min(2, (performance.now() - this.#clock.at) / 1000);
+    const passed = this.#held ? 0 : Math.min(2, (performance.now() - this.#clock.at) / 1000);
     const left = Math.max(0, q.deadline_s - this.#clock.time_s - passed);
     this.#longest = q.id === this.#longestOf ? Math.max(this.#longest, left) : left;
     this.#longestOf = q.id;
@@ -194,5 +195,5 @@ export class Card {
     if (left > 0 && left < 10 && this.#warned !== q.id) { this.#warned = q.id; this.#announce(say("left", 10)); }
   }
 
-  #longest = 0; #longestOf = ""; #warned = "";
+  #held = false; #longest = 0; #longestOf = ""; #warned = "";
 }
