@@ -108,6 +108,7 @@ def run_mission(
     perception: str | None = None,
     accept_failsafes: bool = False,
     briefs: bool = False,
+    views: bool = False,
 ) -> MissionRecord:
     """Flies a mission and keeps what happened.
 
@@ -132,6 +133,7 @@ def run_mission(
         accept_failsafes: fly a real vehicle although its autopilot's fail-safes are not as they should be.
         briefs: whether the operator is asked go or no-go before take-off. One always is where a language model read the
             instruction.
+        views: whether ``progress`` also gets pictures for a person who watches, up to five a second.
 
     Returns:
         The record. How the mission ended is `MissionRecord.outcome`; an ending short of success is no exception.
@@ -154,6 +156,7 @@ def run_mission(
         accept_failsafes=accept_failsafes,
         perception=perception or file.perception.use,
         briefs=briefs,
+        views=views,
         namers=tuple(file.perception.namers) if perception in (None, file.perception.use) else (),
         calibration=_calibration(file, folder) if perception in (None, file.perception.use) else None,
     )

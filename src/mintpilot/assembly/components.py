@@ -69,6 +69,8 @@ class Choices:
     calibration: Path | None = None
     """File of measured confidences of the namers; None: as they say them."""
     camera_size: tuple[int, int] = (320, 240)
+    views: bool = False
+    """Whether somebody watches the camera's pictures while it is flown."""
     briefs: bool = False
     """Whether go or no-go is asked before take-off. It always is where a language model read the instruction."""
 
@@ -191,7 +193,8 @@ class _Components(AbstractContextManager[MissionComponents]):
                 builder.mark_flown(np.asarray([world.mission.start_m], float), TAKE_OFF_CLEAR_M)
             camera = CameraMapSource(camera=simulator, perception=perception, builder=builder, recorder=self._recorder)
             source: MapSource = KeepAwayMapSource(camera, world) if world.task.keep_away else camera
-            return self._made(simulator, source, surveys=surveys, watch_map=True)
+            made = self._made(simulator, source, surveys=surveys, watch_map=True)
+            return replace(made, viewed=simulator) if choices.views else made
         photographs = [g for g in world.task.subgoals if g.action is Action.PHOTOGRAPH]
         if photographs:
             raise InputError(

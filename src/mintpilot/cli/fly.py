@@ -123,6 +123,7 @@ def fly(path: Path, options: FlightOptions) -> ExitCode:
                 lang=options.lang,
                 perception=options.perception,
                 accept_failsafes=options.accept_failsafes,
+                views=served is not None,
                 briefs=served is not None or (_somebody(errors) and options.operators != ("scripted",)),
             )
         except KeyboardInterrupt:

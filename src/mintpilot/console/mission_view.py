@@ -38,6 +38,7 @@ from mintpilot.core.events import (
     OrderTaken,
     PlanChosen,
     Stepped,
+    ViewTaken,
 )
 from mintpilot.core.geometry import Floats
 from mintpilot.core.inputs import (
@@ -132,6 +133,8 @@ class MissionView:
                 self._stepped(event)
             case FrameSeen():
                 self._pictures.seen(event)
+            case ViewTaken():
+                self._pictures.viewed(event)
             case MissionStarted():
                 self._begun(event)
             case MapUpdated():

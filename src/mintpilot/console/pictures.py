@@ -6,9 +6,12 @@ import io
 from collections import OrderedDict
 from collections.abc import Callable
 
+import numpy as np
+
 from mintpilot.console.board import Panes
 from mintpilot.console.protocol import PictureBox, PicturePane
-from mintpilot.core.events import FrameSeen
+from mintpilot.core.events import FrameSeen, ViewTaken
+from mintpilot.core.geometry import Floats
 from mintpilot.core.query import Question
 from mintpilot.core.semantic_map import SemanticMap
 
@@ -16,10 +19,12 @@ MOST_KEPT = 1000
 """Pictures kept as JPEG; the oldest are thrown away first."""
 MOST_SHOWN = 4
 """Pictures shown beside one question."""
+STILL = 0.05
+"""A camera that has moved by less than this, metres, or turned by about as many radians, shows the same."""
 _QUALITY = 80
 
 
-def as_jpeg(event: FrameSeen) -> bytes | None:
+def as_jpeg(event: FrameSeen | ViewTaken) -> bytes:
     """The picture that was just taken."""
     from PIL import Image
 
@@ -39,6 +44,7 @@ class Pictures:
     def __init__(self, board: Panes, jpeg_of: Callable[[FrameSeen], bytes | None] = as_jpeg) -> None:
         self._board, self._jpeg_of = board, jpeg_of
         self._kept: OrderedDict[int, tuple[float, bytes]] = OrderedDict()
+        self._last: tuple[Floats, PicturePane] | None = None
 
     def seen(self, event: FrameSeen) -> None:
         """A new picture, with what was found in it."""
@@ -52,7 +58,20 @@ class Pictures:
             PictureBox(id="", words=d.label, box=_box(d.pixels)) for d in event.detections if d.pixels[2] > d.pixels[0]
         )
         pane = PicturePane(frame=event.index, time_s=round(event.frame.time_s, 2), boxes=boxes)
+        self._last = (event.frame.world_from_camera, pane)
         self._board.put("camera", pane, jpeg)
+
+    def viewed(self, event: ViewTaken) -> None:
+        """A picture between two of those; what was found is still outlined while the camera is where it was."""
+        frame, index = event.frame, -1
+        boxes: tuple[PictureBox, ...] = ()
+        if self._last is not None:
+            where, pane = self._last
+            index = pane.frame
+            if float(np.abs(frame.world_from_camera - where).max()) < STILL:
+                boxes = pane.boxes
+        pane = PicturePane(frame=index, time_s=round(frame.time_s, 2), boxes=boxes)
+        self._board.put("camera", pane, as_jpeg(event))
 
     def about(self, question: Question, map: SemanticMap | None) -> None:
         """The pictures in which the things are that the question is about, with their outlines."""

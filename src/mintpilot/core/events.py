@@ -55,6 +55,13 @@ class FrameSeen:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class ViewTaken:
+    """A picture for whoever watches: nothing is found in it, nothing is learnt from it, and it is not kept."""
+
+    frame: Frame
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class MapUpdated:
     """The semantic map was replaced."""
 
@@ -179,6 +186,7 @@ class MissionEnded:
 Event: TypeAlias = (
     MissionStarted
     | FrameSeen
+    | ViewTaken
     | MapUpdated
     | Deliberated
     | Asked

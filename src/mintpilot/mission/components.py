@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from mintpilot.core.briefing import Briefing
 from mintpilot.core.events import MissionStarted
-from mintpilot.core.ports import Judge, Operator, Recorder, Vehicle
+from mintpilot.core.ports import Camera, Judge, Operator, Recorder, Vehicle
 from mintpilot.mission.deliberation import DeliberationParts
 from mintpilot.mission.map_source import MapSource
 from mintpilot.mission.rewording import Improve
@@ -49,6 +49,8 @@ class MissionComponents:
     """False where the map is given and nothing new can be seen."""
     camera_period_s: float = 0.5
     """Between pictures in flight, seconds."""
+    viewed: Camera | None = None
+    """Takes pictures for a person who watches, beside those that the map is made of; None: nobody does."""
     briefing: Briefing | None = None
     """What is shown before take-off and must be answered with yes; None: it takes off at once."""
     digests: bool = False

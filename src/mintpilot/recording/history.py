@@ -19,6 +19,7 @@ from mintpilot.core.events import (
     PlanChosen,
     Stepped,
     Timed,
+    ViewTaken,
 )
 from mintpilot.core.gap import KnowledgeGap
 from mintpilot.core.query import Evidence
@@ -65,7 +66,7 @@ class History:
                 self.notices.append(event)
             case OrderTaken():
                 self.orders.append(event)
-            case Stepped() | FactsChanged():
+            case Stepped() | FactsChanged() | ViewTaken():
                 pass
             case Timed():
                 self.timings_s[event.stage] = self.timings_s.get(event.stage, 0.0) + event.seconds

@@ -35,6 +35,7 @@ from mintpilot.core.events import (
     MissionEnded,
     MissionStarted,
     PlanChosen,
+    ViewTaken,
 )
 from mintpilot.core.ports import Recorder
 from mintpilot.core.task import Action
@@ -48,6 +49,7 @@ from mintpilot.recording.record import MissionRecord, NoticeRecord
 _DECISIONS = (MissionStarted, Deliberated, Asked, PlanChosen, LegFlown, MissionEnded)
 DERIVED = (MapUpdated, Deliberated, PlanChosen, LegFlown, FactsChanged)
 """What follows from the steps, and is large: it is not written a second time."""
+_UNWRITTEN = (*DERIVED, ViewTaken)
 _RUNNING = "The mission was still running when this was written."
 _CUT_SHORT = "The mission was ended before it was finished."
 
@@ -98,7 +100,7 @@ class RunFolder(Recorder):
     def record(self, event: Event) -> None:
         """Writes the event through at once. What cannot be written is noted, and the mission goes on."""
         self._history.add(event)
-        if not isinstance(event, DERIVED):
+        if not isinstance(event, _UNWRITTEN):
             self._guard("an event", lambda: self._events.append(event))
         self._guard("the flight for viewers", lambda: self._mcap.record(event))
         if isinstance(event, LegFlown):
