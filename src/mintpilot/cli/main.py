@@ -129,6 +129,7 @@ def run(
     port: Port = None,
     tls_cert: Path | None = None,
     tls_key: Path | None = None,
+    tls_self_signed: Path | None = None,
     out: Path | None = None,
     json: Json = False,
     debug: Flag = False,
@@ -154,6 +155,8 @@ def run(
         port: Of the web page. Default: any that is free.
         tls_cert: Of the web page: its certificate, PEM.
         tls_key: Of the web page: the certificate's key, PEM.
+        tls_self_signed: Of the web page: a folder in which a self-signed pair is made, and used again next time.
+            Browsers warn of it once; its fingerprint is printed.
         out: Run folder; a new one under ./runs by default.
         json: Print the outcome, questions, gaps and figures as one JSON object, and nothing else, on standard output.
             The whole record is in the run folder.
@@ -169,11 +172,18 @@ def run(
     page = None
     if "console" in people:
         patience_s = BESIDE_S if len(people) > 1 else None
+        if tls_self_signed is not None and (tls_cert, tls_key) != (None, None):
+            return fail("--tls-self-signed makes a pair: leave out --tls-cert and --tls-key", as_json=json)
         page = PageOptions(
-            host=host or "127.0.0.1", port=port or 0, tls_cert=tls_cert, tls_key=tls_key, patience_s=patience_s
+            host=host or "127.0.0.1",
+            port=port or 0,
+            tls_cert=tls_cert,
+            tls_key=tls_key,
+            tls_self_signed=tls_self_signed,
+            patience_s=patience_s,
         )
-    elif (host, port, tls_cert, tls_key) != (None, None, None, None):
-        return fail("--host, --port, --tls-cert and --tls-key go with --operator console only", as_json=json)
+    elif (host, port, tls_cert, tls_key, tls_self_signed) != (None,) * 5:
+        return fail("--host, --port and --tls-... go with --operator console only", as_json=json)
     options = FlightOptions(
         operators=people,
         page=page,

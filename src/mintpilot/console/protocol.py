@@ -188,6 +188,10 @@ class MissionPane(Message):
     verdict: str = ""
     """Empty while it goes on."""
     reason: str = ""
+    waited_s: float = 0.0
+    """What waiting for answers took in all; known once it is over."""
+    hidden_s: float = 0.0
+    """Of that, what was flown meanwhile and had to be flown anyway."""
 
 
 class PosePane(Message):

@@ -15,7 +15,7 @@ from mintpilot.console.desk import Asked, Desk
 from mintpilot.console.mission_view import MissionView
 from mintpilot.console.protocol import AttentionPane, Said
 from mintpilot.core.errors import DeviceError, MissingPartError
-from mintpilot.core.events import Event, FrameSeen, ViewTaken
+from mintpilot.core.events import Event, FrameSeen, QuestionTimed, ViewTaken
 from mintpilot.core.inputs import OperatorInput, Ordered
 from mintpilot.core.ports import Operator, Recorder, Understand
 from mintpilot.core.query import Order, Question
@@ -148,6 +148,9 @@ class WebConsole(Operator, Recorder):
 
     def record(self, event: Event) -> None:
         """Shows one event to whoever watches, a moment later, in another thread."""
+        turn = self._answering.turn
+        if isinstance(event, QuestionTimed) and turn is not None and turn.question.id == event.question:
+            turn.patience_s = max(0.0, event.deadline_s - (turn.shown_s or event.deadline_s - turn.patience_s))
         waiting = self._work.qsize()
         if (isinstance(event, FrameSeen) and waiting > _BUSY) or (isinstance(event, ViewTaken) and waiting > _LATE):
             return

@@ -139,6 +139,18 @@ class OrderTaken:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class QuestionTimed:
+    """Until when the open question is waited for: told when it is put, and whenever that changes."""
+
+    question: str
+    """Its id."""
+    deadline_s: float
+    """Mission clock."""
+    extended: bool
+    """Whether more time was granted."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class FactsChanged:
     """An operator told something, confirmed it or took it back; or it lapsed."""
 
@@ -193,6 +205,7 @@ Event: TypeAlias = (
     | PlanChosen
     | LegFlown
     | OrderTaken
+    | QuestionTimed
     | FactsChanged
     | Stepped
     | Noticed

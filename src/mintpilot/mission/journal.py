@@ -16,6 +16,7 @@ from mintpilot.core.events import (
     Noticed,
     OrderTaken,
     PlanChosen,
+    QuestionTimed,
     Stepped,
     Timed,
 )
@@ -88,6 +89,9 @@ class Journal:
                 )
             case _:
                 pass
+        if after.question is not None and _timing(after.question) != _timing(before.question):
+            name, deadline_s, extended = _timing(after.question)
+            yield QuestionTimed(question=name, deadline_s=deadline_s, extended=extended)
         if after.told is not before.told:
             yield FactsChanged(told=tuple(one.known for one in after.told))
         yield from _asked(before, event, after)
@@ -174,6 +178,10 @@ def _entry(open_: OpenQuestion, answer: Answer) -> Asked:
         first_text=open_.first_text,
         better_s=open_.reworded_s,
     )
+
+
+def _timing(open_: OpenQuestion | None) -> tuple[str, float, bool]:
+    return ("", 0.0, False) if open_ is None else (open_.question.id, open_.deadline_s, open_.extended)
 
 
 def _broken_off(before: MissionState, event: Input) -> bool:

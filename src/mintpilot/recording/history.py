@@ -17,6 +17,7 @@ from mintpilot.core.events import (
     Noticed,
     OrderTaken,
     PlanChosen,
+    QuestionTimed,
     Stepped,
     Timed,
     ViewTaken,
@@ -66,7 +67,7 @@ class History:
                 self.notices.append(event)
             case OrderTaken():
                 self.orders.append(event)
-            case Stepped() | FactsChanged() | ViewTaken():
+            case Stepped() | FactsChanged() | QuestionTimed() | ViewTaken():
                 pass
             case Timed():
                 self.timings_s[event.stage] = self.timings_s.get(event.stage, 0.0) + event.seconds

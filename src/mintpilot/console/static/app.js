@@ -52,7 +52,8 @@ function showMission(m) {
   $("name").textContent = m.name;
   $("instruction").textContent = m.instruction;
   $("briefing").replaceChildren(
-    ...(m.verdict ? [make("p", { class: `verdict ${m.verdict === "success" ? "good" : "bad"}`, role: "status" }, make("strong", { text: say("ended") }), make("span", { text: m.reason }))] : []),
+    ...(m.verdict ? [make("p", { class: `verdict ${m.verdict === "success" ? "good" : "bad"}`, role: "status" }, make("strong", { text: say("ended") }), make("span", { text: m.reason }),
+      ...(m.waited_s >= 0.5 ? [make("span", { class: "figures", text: say("waited", Math.round(m.waited_s), Math.max(0, Math.round(m.hidden_s))) })] : []))] : []),
     ...(m.briefing.length && !m.verdict ? [make("details", { open: true }, make("summary", { text: say("briefing") }), ...m.briefing.map((line) => make("p", { text: line })))] : []));
 }
 

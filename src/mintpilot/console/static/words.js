@@ -21,6 +21,7 @@ const WORDS = {
     mapLabel: "Map from above. The drone is at {0} east, {1} north, {2} high.", evidence: "What the question is about", noQuestion: "no question",
     known: "What you know of it", draw: "Draw a region to keep out of", stopDrawing: "Stop drawing", howToDraw: "Draw around the region with mouse or finger. With keys: arrows move, Enter sets a corner, Enter once more closes, Escape ends.", "fact-blocked": "Keep out", "fact-passable": "Safe to fly through", "fact-searched": "Was searched", "fact-this-one": "This one", "told-keep-out": "Keep out of the drawn region", "told-blocked": "Keep out: {}", "told-passable": "Safe to fly through: {}", "told-searched": "Was searched: {}", "told-this-one": "This one is meant: {}", "standing-undone": "taken back", "standing-lapsed": "no longer counts", "standing-refused": "not taken over: {}", toldAsk: "This takes caution away. I understood: {}. Is that right?", undo: "Undo",
     replay: "Replay", moment: "Moment of the mission", tempo: "Speed of the replay", before: "Event before", after: "Next event", play: "Play", pause: "Pause", calmReplay: "At this moment nothing is asked.",
+    waited: "It waited {0} s for answers and flew on meanwhile: {1} s of that were not lost.",
     "log-question": "asks", "log-answer": "answer", "log-order": "order", "log-says": "says", "log-note": "note", "log-plan": "plan", "log-begun": "begins", "log-ended": "end",
   },
   de: {
@@ -43,6 +44,7 @@ const WORDS = {
     mapLabel: "Karte von oben. Die Drohne ist bei {0} Ost, {1} Nord, {2} hoch.", evidence: "Worum es geht", noQuestion: "keine Frage",
     known: "Was Sie darüber wissen", draw: "Sperrgebiet zeichnen", stopDrawing: "Zeichnen beenden", howToDraw: "Das Gebiet mit Maus oder Finger umfahren. Mit Tasten: Pfeile bewegen, Enter setzt eine Ecke, noch einmal Enter schließt, Escape beendet.", "fact-blocked": "Fernbleiben", "fact-passable": "Darf durchflogen werden", "fact-searched": "Ist durchsucht", "fact-this-one": "Dieses", "told-keep-out": "Dem gezeichneten Gebiet fernbleiben", "told-blocked": "Fernbleiben: {}", "told-passable": "Darf durchflogen werden: {}", "told-searched": "Ist durchsucht: {}", "told-this-one": "Dieses ist gemeint: {}", "standing-undone": "zurückgenommen", "standing-lapsed": "gilt nicht mehr", "standing-refused": "nicht übernommen: {}", toldAsk: "Das nimmt Vorsicht weg. Ich habe verstanden: {}. Stimmt das?", undo: "Zurücknehmen",
     replay: "Wiedergabe", moment: "Zeitpunkt der Mission", tempo: "Tempo der Wiedergabe", before: "Ereignis davor", after: "Nächstes Ereignis", play: "Abspielen", pause: "Pause", calmReplay: "In diesem Augenblick wird nichts gefragt.",
+    waited: "Sie hat {0} s auf Antworten gewartet und ist dabei weitergeflogen: {1} s davon waren nicht verloren.",
     "log-question": "fragt", "log-answer": "Antwort", "log-order": "Befehl", "log-says": "sagt", "log-note": "Hinweis", "log-plan": "Plan", "log-begun": "Beginn", "log-ended": "Ende",
   },
   fr: {
@@ -65,6 +67,7 @@ const WORDS = {
     mapLabel: "Carte vue d'en haut. Le drone est à {0} est, {1} nord, hauteur {2}.", evidence: "L'objet de la question", noQuestion: "pas de question",
     known: "Ce que vous en savez", draw: "Dessiner une zone interdite", stopDrawing: "Arrêter le dessin", howToDraw: "Entourez la zone à la souris ou au doigt. Au clavier : les flèches déplacent, Entrée pose un coin, Entrée encore ferme, Échap arrête.", "fact-blocked": "Ne pas entrer", "fact-passable": "Peut être traversé", "fact-searched": "A été fouillée", "fact-this-one": "Celui-ci", "told-keep-out": "Ne pas entrer dans la zone dessinée", "told-blocked": "Ne pas entrer : {}", "told-passable": "Peut être traversé : {}", "told-searched": "A été fouillée : {}", "told-this-one": "C'est celui-ci : {}", "standing-undone": "retiré", "standing-lapsed": "ne compte plus", "standing-refused": "pas retenu : {}", toldAsk: "Cela enlève de la prudence. J'ai compris : {}. C'est juste ?", undo: "Retirer",
     replay: "Relecture", moment: "Instant de la mission", tempo: "Vitesse de relecture", before: "Événement précédent", after: "Événement suivant", play: "Lire", pause: "Pause", calmReplay: "À cet instant, rien n'est demandé.",
+    waited: "Il a attendu les réponses {0} s en continuant de voler : {1} s n'ont pas été perdues.",
     "log-question": "demande", "log-answer": "réponse", "log-order": "ordre", "log-says": "dit", "log-note": "note", "log-plan": "plan", "log-begun": "début", "log-ended": "fin",
   },
   es: {
@@ -87,6 +90,7 @@ const WORDS = {
     mapLabel: "Mapa desde arriba. El dron está a {0} este, {1} norte, {2} de altura.", evidence: "De qué se trata", noQuestion: "sin pregunta",
     known: "Lo que usted sabe", draw: "Dibujar una zona prohibida", stopDrawing: "Terminar el dibujo", howToDraw: "Rodee la zona con el ratón o el dedo. Con teclas: las flechas mueven, Intro pone una esquina, Intro otra vez cierra, Escape termina.", "fact-blocked": "No entrar", "fact-passable": "Se puede atravesar", "fact-searched": "Ya registrada", "fact-this-one": "Este", "told-keep-out": "No entrar en la zona dibujada", "told-blocked": "No entrar: {}", "told-passable": "Se puede atravesar: {}", "told-searched": "Ya registrada: {}", "told-this-one": "Es este: {}", "standing-undone": "retirado", "standing-lapsed": "ya no cuenta", "standing-refused": "no aceptado: {}", toldAsk: "Esto quita precaución. He entendido: {}. ¿Es correcto?", undo: "Retirar",
     replay: "Repetición", moment: "Momento de la misión", tempo: "Velocidad de la repetición", before: "Suceso anterior", after: "Suceso siguiente", play: "Reproducir", pause: "Pausa", calmReplay: "En este momento no se pregunta nada.",
+    waited: "Esperó respuestas {0} s y siguió volando: {1} s no se perdieron.",
     "log-question": "pregunta", "log-answer": "respuesta", "log-order": "orden", "log-says": "dice", "log-note": "nota", "log-plan": "plan", "log-begun": "inicio", "log-ended": "fin",
   },
 };
