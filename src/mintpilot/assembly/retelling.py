@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Protocol
 
@@ -53,11 +54,25 @@ def retell(run: Path, watcher: Watcher) -> str:
         RecordError: it cannot be read, is damaged, is of another version, or does not begin with its beginning.
     """
     log = read_event_log(run)
+    for _ in retold((logged.event for logged in log), watcher):
+        pass
+    if log.cut:
+        watcher.record(Noticed(kind="record", text=f"The record breaks off: {log.cut}."))
+    return log.cut
+
+
+def retold(events: Iterable[Event], watcher: Watcher) -> Iterator[MissionState]:
+    """Tells the events of a mission again, one step after another; gives the state after each step.
+
+    Raises:
+        RecordError: they do not begin with the beginning.
+    """
     journal = Journal(_Derived(watcher))
     started: MissionStarted | None = None
     state: MissionState | None = None
-    for logged in log:
-        event = logged.event
+    for event in events:
+        if isinstance(event, DERIVED):
+            continue
         watcher.record(event)
         if isinstance(event, MissionStarted):
             started = event
@@ -65,7 +80,7 @@ def retell(run: Path, watcher: Watcher) -> str:
             continue
         if state is None:
             if started is None or not isinstance(event.input, MissionBegun):
-                raise RecordError(f"{run}: the record does not begin with the start of a mission: give a whole run")
+                raise RecordError("the record does not begin with the start of a mission: give a whole run folder")
             state = initial_state(setup_of(started), event.input.vehicle)
         before, (state, directives) = state, step(state, event.input)
         journal.keep(before, event.input, state, directives)
@@ -79,9 +94,7 @@ def retell(run: Path, watcher: Watcher) -> str:
                     watcher.tell(directive.text)
                 case _:
                     pass
-    if log.cut:
-        watcher.record(Noticed(kind="record", text=f"The record breaks off: {log.cut}."))
-    return log.cut
+        yield state
 
 
 class _Derived(Recorder):

@@ -124,6 +124,7 @@ def run(
     llm: Llm = None,
     lang: Lang = None,
     perception: str | None = None,
+    map: Path | None = None,
     accept_failsafes: Flag = False,
     host: str | None = None,
     port: Port = None,
@@ -150,6 +151,8 @@ def run(
         llm: Language model for words: template (none), endpoint, embedded, or a plug-in's. Default: as the file says.
         lang: Language of the questions: en, de, fr or es. Default: as the file says.
         perception: Who makes objects of pictures: geometric, segments, or a plug-in's. Default: as the file says.
+        map: Run folder of an earlier mission in the same place: this one begins with its map, in place of a survey. Its
+            age is told; what was free is looked at again as it comes into view; what was permitted is asked again.
         accept_failsafes: Fly a real vehicle although its autopilot's fail-safes are not as they should be.
         host: Of the web page: where it is served. Default: 127.0.0.1, for this machine only; elsewhere with TLS only.
         port: Of the web page. Default: any that is free.
@@ -197,6 +200,7 @@ def run(
         llm=llm,
         lang=lang,
         perception=perception,
+        earlier=map,
         accept_failsafes=accept_failsafes,
     )
     return guarded(lambda: fly(mission, options), as_json=json, debug=debug)

@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING
 from mintpilot.cli.exits import ExitCode
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from mintpilot.core.events import FrameSeen
 
 
@@ -66,15 +68,8 @@ def serve_run(run: Path, *, port: int, opens: bool) -> None:
     """
     from mintpilot.assembly.retelling import retell
     from mintpilot.console import Address, ReplayConsole
-    from mintpilot.recording.frames import FrameStore
 
-    pictures = FrameStore(run / "frames")
-
-    def kept(event: FrameSeen) -> bytes | None:
-        file = pictures.file(event.index)
-        return file.read_bytes() if file.is_file() else None
-
-    with ReplayConsole(jpeg_of=kept, address=Address(port=port)) as console:
+    with ReplayConsole(jpeg_of=kept_pictures(run), address=Address(port=port)) as console:
         cut = retell(run, console)
         console.serve()
         if cut:
@@ -86,6 +81,19 @@ def serve_run(run: Path, *, port: int, opens: bool) -> None:
             webbrowser.open(console.url)
         with suppress(KeyboardInterrupt):
             threading.Event().wait()
+
+
+def kept_pictures(run: Path) -> Callable[[FrameSeen], bytes | None]:
+    """Gives those pictures of a run that were kept, as JPEG."""
+    from mintpilot.recording.frames import FrameStore
+
+    pictures = FrameStore(run / "frames")
+
+    def kept(event: FrameSeen) -> bytes | None:
+        file = pictures.file(event.index)
+        return file.read_bytes() if file.is_file() else None
+
+    return kept
 
 
 def _report(run: Path, *, as_json: bool) -> ExitCode:

@@ -45,6 +45,8 @@ class MissionComponents:
     """True in a simulator only: baselines may then fly what is not known to be passable."""
     lands: bool = False
     """True for a real vehicle: however the mission ends, it returns if it can, and lands."""
+    begins_with: str = ""
+    """Of a mission that begins with an earlier map: a sentence that says how old it is."""
     watch_map: bool = True
     """False where the map is given and nothing new can be seen."""
     camera_period_s: float = 0.5
