@@ -12,6 +12,8 @@ from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
+from PIL import Image
 from playwright.sync_api import Browser, Page, sync_playwright
 
 from mintpilot.assembly.api import run_mission
@@ -23,8 +25,10 @@ from mintpilot.console import ReplayConsole, WebConsole
 from mintpilot.core.events import Event, FactsChanged, FrameSeen
 from mintpilot.core.gap import GapKind
 from mintpilot.core.observation import Frame
-from mintpilot.core.query import Answer, Question, Reply, Standing
-from mintpilot.core.told import KeepOut, RegionPassable, RoomSearched, ToldFact
+from mintpilot.core.query import Answer, Question, Standing
+from mintpilot.core.reading import guarded_replies
+from mintpilot.core.semantic_map import SemanticMap
+from mintpilot.core.told import Fact, KeepOut, RegionPassable, RoomSearched, ToldFact
 from mintpilot.core.told import Standing as Told
 from mintpilot.recording.event_log import read_event_log
 
@@ -34,7 +38,7 @@ WHO = "console:1f6c02ab@127.0.0.1"
 
 
 class UntilAsked(Watcher):
-    """Shows a mission on a page up to a question about a region: it is left open."""
+    """Shows a mission on a page up to its first question: that is left open."""
 
     def __init__(self, console: WebConsole) -> None:
         self._console = console
@@ -49,7 +53,7 @@ class UntilAsked(Watcher):
         """See `Watcher.show`."""
         if self.asked is None:
             self._console.show(question, 30.0)
-            if any(gap.kind is GapKind.OBSTACLE for gap in question.gaps):
+            if all(gap.kind is not GapKind.GO for gap in question.gaps):
                 self.asked = question
 
     def withdraw(self, question: str, why: str) -> None:
@@ -65,9 +69,6 @@ class UntilAsked(Watcher):
 
 def with_pictures(run: Path) -> Iterator[Event]:
     """The events of a run, with those pictures that were kept."""
-    import numpy as np
-    from PIL import Image
-
     for logged in read_event_log(run):
         event = logged.event
         if isinstance(event, FrameSeen):
@@ -80,16 +81,16 @@ def with_pictures(run: Path) -> Iterator[Event]:
 
 
 @contextmanager
-def asked_about_a_region(run: Path) -> Iterator[tuple[WebConsole, Question]]:
-    """A page on which the drone asks whether a region may be flown through."""
+def asking(run: Path) -> Iterator[tuple[WebConsole, Question, SemanticMap]]:
+    """A page on which the drone asks, its question, and the map that it has then."""
     talk = Talk()
     with WebConsole(understand=talk.understand, order_of=talk.order_of) as console:
         watcher = UntilAsked(console)
-        for _ in retold(with_pictures(run), watcher):
-            if watcher.asked is not None:
-                break
-        assert watcher.asked is not None, "nothing was asked about a region: take another mission"
-        yield console, watcher.asked
+        for state in retold(with_pictures(run), watcher):
+            if watcher.asked is not None and state.beliefs is not None:
+                yield console, watcher.asked, state.beliefs.map
+                return
+        raise RuntimeError("nothing was asked: take another mission")
 
 
 @contextmanager
@@ -99,7 +100,7 @@ def opened(browser: Browser, url: str, size: tuple[int, int], *, dark: bool = Fa
         viewport={"width": size[0], "height": size[1]},
         color_scheme="dark" if dark else "light",
         reduced_motion="reduce",
-        device_scale_factor=1.5,
+        device_scale_factor=1,
     )
     page = context.new_page()
     page.goto(url)
@@ -134,13 +135,14 @@ def draw(page: Page, places: list[tuple[float, float]], *, ends: bool) -> None:
 
 def while_asking(browser: Browser, run: Path) -> None:
     """The question, its read-back, a telephone, the dark, a second viewer, drawing, and a lost link."""
-    with asked_about_a_region(run) as (console, question), opened(browser, console.url(), TALL) as page:
+    with asking(run) as (console, question, map), opened(browser, console.url(), TALL) as page:
         page.hover("#card .answer.yes")
         keep(page, "question")
         page.mouse.move(0, 0)
         with opened(browser, console.url(), WIDE) as second:
             keep(second, "second-viewer")
-        answer = Answer(reply=Reply.YES, latency_s=4.0, text="looks safe to me", by="typed")
+        frees = min(guarded_replies(question))
+        answer = Answer(reply=frees, latency_s=4.0, text=frees.value, by="typed")
         back = replace(question, read_back=replace(answer, standing=Standing.UNCONFIRMED))
         console.show(back, 22.0)
         page.wait_for_selector("#card .understood")
@@ -148,14 +150,13 @@ def while_asking(browser: Browser, run: Path) -> None:
         keep(page, "read-back")
         console.show(question, 30.0)
         page.wait_for_selector("#card .answer.silence")
-        region = next(gap.subject for gap in question.gaps)
-        told = page_facts(page, region, question)
-        console.record(FactsChanged(told=told))
+        console.record(FactsChanged(told=page_facts(map)))
         page.wait_for_selector("#back .understood")
         draw(page, [(0.42, 0.2), (0.5, 0.16), (0.56, 0.24), (0.53, 0.36), (0.44, 0.35), (0.415, 0.24)], ends=False)
         page.locator("#place").scroll_into_view_if_needed()
         keep(page, "drawing")
         page.keyboard.press("Escape")
+        page.mouse.up()
         console.record(FactsChanged(told=()))
         with opened(browser, console.url(), NARROW) as phone:
             phone.click("#seat")
@@ -174,16 +175,14 @@ def while_asking(browser: Browser, run: Path) -> None:
         keep(page, "link-lost")
 
 
-def page_facts(page: Page, region: str, question: Question) -> tuple[ToldFact, ...]:
-    """A drawn region that counts, a region that is read back, and a room that was taken back."""
-    left, bottom, right, top = page.evaluate("() => JSON.parse(document.querySelector('#map').dataset.box)")
-    x, y = (lambda share: left + share * (right - left)), (lambda share: bottom + share * (top - bottom))
-    corners = ((x(0.7), y(0.1)), (x(0.85), y(0.1)), (x(0.88), y(0.3)), (x(0.72), y(0.33)))
-    made = (
-        (KeepOut(corners_m=corners), "", Told.COUNTS),
-        (RoomSearched(room="room-1"), "the closed room with the brown door", Told.UNDONE),
-        (RegionPassable(region=region), question.gaps[0].description, Told.READ_BACK),
-    )
+def page_facts(map: SemanticMap) -> tuple[ToldFact, ...]:
+    """A drawn region that counts, what was taken back of a room, and what is read back of a region."""
+    (left, bottom, _), (right, top, _) = map.frame.box.lo_m, map.frame.box.hi_m
+    shares = ((0.62, 0.1), (0.8, 0.1), (0.83, 0.3), (0.66, 0.33))
+    corners = tuple((left + u * (right - left), bottom + v * (top - bottom)) for u, v in shares)
+    made: list[tuple[Fact, str, Told]] = [(KeepOut(corners_m=corners), "", Told.COUNTS)]
+    made += [(RoomSearched(room=one.id), one.description, Told.UNDONE) for one in map.rooms[:1]]
+    made += [(RegionPassable(region=one.id), one.description, Told.READ_BACK) for one in map.regions[:1]]
     return tuple(
         ToldFact(id=f"told-{n}", fact=fact, words=words, operator=WHO, told_s=40.0 + n, standing=standing)
         for n, (fact, words, standing) in enumerate(made)

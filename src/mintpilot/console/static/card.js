@@ -167,7 +167,7 @@ export class Card {
 
   #confirm(q) {
     return [
-      make("p", { class: "understood" }, make("span", { text: say("understood", this.#readBack()) }), " ", make("strong", { text: say("isRight") })),
+      make("p", { class: "understood" }, make("span", { text: `${say("understood", this.#readBack())}.` }), " ", make("strong", { text: say("isRight") })),
       make("div", { class: "answers two" },
         make("button", { type: "button", class: "answer yes", "data-reply": "yes", disabled: !this.#may, onclick: () => this.#reply("yes") }, make("strong", { text: say("right") }, make("kbd", { text: "Y", "aria-hidden": "true" }))),
         make("button", { type: "button", class: "answer no", "data-reply": "no", disabled: !this.#may, onclick: () => this.#reply("no") }, make("strong", { text: say("wrong") }, make("kbd", { text: "N", "aria-hidden": "true" })))),

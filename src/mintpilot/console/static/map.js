@@ -246,7 +246,7 @@ export class MapView {
       else c.rect(x - w / 2, y - h / 2, w, h);
       c.fill();
       c.stroke();
-      if (few || room) this.#label(c, room ? `${say("room")}${thing.state === "searched" ? " ✓" : " ?"}` : thing.words, x, y - h / 2 - 5);
+      if (few || room) this.#label(c, room ? `${say("room")}${thing.state === "searched" ? " ✓" : " ?"}` : thing.words, x, y - h / 2 - (room ? 14 : 5));
     }
   }
 

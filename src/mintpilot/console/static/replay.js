@@ -42,7 +42,7 @@ export class Replay {
     $("speed").setAttribute("aria-label", say("tempo"));
     $("back-to").setAttribute("aria-label", say("before"));
     $("on-to").setAttribute("aria-label", say("after"));
-    $("play").textContent = pane.speed ? "❚❚" : "▶";
+    $("play").textContent = pane.speed ? "||" : "▶";
     $("play").setAttribute("aria-label", say(pane.speed ? "pause" : "play"));
     $("at").textContent = `${pane.time_s.toFixed(1)} / ${pane.to_s.toFixed(0)} s`;
     $("role").textContent = say("replay");
