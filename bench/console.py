@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import asyncio
 import json
+import os
 import tempfile
 import threading
 import time
@@ -248,7 +249,7 @@ def main() -> None:
             how="Headless Chromium and the program on one machine. Poses at 10 Hz, 320 x 240 pictures at 5 Hz; "
             f"viewers are WebSocket clients, a question comes every 2 s and is late after {LATE_MS:.0f} ms. Key to "
             "motion: the demo missions, kinematic; a drone that flies while it waits brakes first, then thinks, then "
-            "flies on.",
+            f"flies on. Load average of the machine meanwhile: {os.getloadavg()[1]:.0f} on {os.cpu_count()} cores.",
             tables=[Table(caption="", header=("what", "must", "measured", "n"), rows=rows)],
             notes=[
                 f"Key to {what}, {name}: {sum(one > MOTION_MS for one in ms)} of {len(ms)} miss {MOTION_MS:.0f} ms."

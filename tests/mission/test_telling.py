@@ -188,6 +188,17 @@ def test_a_read_back_is_confirmed_in_time_or_not_at_all() -> None:
     assert not scene.beliefs.confirmed
 
 
+def test_what_is_permitted_already_is_read_back_all_the_same() -> None:
+    """Said again, a yes would count longer."""
+    scene = Scene()
+    for _ in range(2):
+        before = scene.beliefs
+        scene.tell(READ_BACK[0])
+        assert scene.standing is Standing.READ_BACK
+        assert (scene.beliefs.belief, scene.beliefs.grants) == (before.belief, before.grants)
+        scene.feed(FactConfirmed(time_s=0.0, told=scene.last))
+
+
 def test_a_yes_gets_old_and_says_so() -> None:
     scene = Scene()
     scene.tell(READ_BACK[0])

@@ -26,6 +26,8 @@ from mintpilot.mission.transition import Transition
 
 MOST_TOLD: Final = 200
 """Facts of one mission."""
+_FREEING: Final = (RegionPassable, RoomSearched, ThisOne)
+"""Facts that are read back whatever is permitted already: said again, they count longer, or weigh more."""
 _IN_FLIGHT: Final = (
     Activity.EXPLORE,
     Activity.SURVEY_BACK,
@@ -58,7 +60,7 @@ def told(t: Transition, event: FactTold) -> None:
     found = facts.apply(event.fact, beliefs, beliefs.map, mission, t.state.clock_s)
     if isinstance(found, str):
         _keep(t, _refused(known, found))
-    elif enlarges(beliefs, found.beliefs, mission.asking):
+    elif isinstance(event.fact, _FREEING) or enlarges(beliefs, found.beliefs, mission.asking):
         _keep(t, Telling(known=replace(known, standing=Standing.READ_BACK), shown=beliefs.map))
     else:
         _keep(t, Telling(known=known, memory=found.memory, counts_s=t.state.clock_s))
