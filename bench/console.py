@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import asyncio
 import json
+import os
 import tempfile
 import threading
 import time
@@ -38,7 +39,7 @@ from mintpilot.recording.mcap_log import MCAP_FILE
 
 SECONDS = 20.0
 VIEWERS, VIEWED_S = 10, 60.0
-MOTIONS, MOTION_MS = 3, 300.0
+MOTIONS, MOTION_MS = 10, 300.0
 LATE_MS = 500.0
 """A question that a viewer gets later than this is late."""
 FLAGS = ["--headless", "--no-sandbox", "--disable-gpu", "--disable-background-networking", "--no-first-run"]
@@ -168,10 +169,12 @@ def log_size() -> tuple[float, float]:
         return float(size), info.seconds
 
 
-def to_motion(browser: Browser, mission: str) -> float:
-    """Milliseconds from the press of a key to the next motion, in a demo mission."""
+def to_motion(browser: Browser, mission: str) -> tuple[float, float]:
+    """Milliseconds from the press of a key until the drone does something else (it brakes, or moves), and flies on."""
     consoles: list[WebConsole] = []
-    served, moved = threading.Event(), []
+    served = threading.Event()
+    moved: list[float] = []
+    heard: list[float] = []
 
     def operator(talk: Talk) -> WebConsole:
         consoles.append(WebConsole(understand=talk.understand, order_of=talk.order_of))
@@ -180,6 +183,8 @@ def to_motion(browser: Browser, mission: str) -> float:
         return consoles[0]
 
     def note(event: Event) -> None:
+        if isinstance(event, Stepped) and {"Move", "Brake"} & set(event.directives):
+            heard.append(time.perf_counter())
         if isinstance(event, Stepped) and "Move" in event.directives:
             moved.append(time.perf_counter())
         consoles[0].record(event)
@@ -198,12 +203,12 @@ def to_motion(browser: Browser, mission: str) -> float:
             pressed = time.perf_counter()
             page.keyboard.press("y")
         page.wait_for_timeout(300)
-    found = 1000 * min(at - pressed for at in moved if at > pressed)
+    changed, flies = (1000 * min(at - pressed for at in times if at > pressed) for times in (heard, moved))
     page.click("#orders .abort")
     flight.join()
     page.close()
     consoles[0].close()
-    return found
+    return changed, flies
 
 
 def main() -> None:
@@ -216,6 +221,11 @@ def main() -> None:
         poses, share = latency(browser)
         motions = {name: [to_motion(browser, name) for _ in range(MOTIONS)] for name in DEMOS}
         browser.close()
+    waits = [
+        (what, name, [pair[i] for pair in pairs])
+        for name, pairs in motions.items()
+        for i, what in enumerate(("brake or motion", "next flight"))
+    ]
     rows = [
         ("page, all files", "under 100 kB", f"{page_kb:.1f} kB", "1"),
         ("pose from simulator to browser, camera on", "p95 under 100 ms",
@@ -224,8 +234,8 @@ def main() -> None:
         (f"question to each of {VIEWERS} viewers, {VIEWED_S:.0f} s", "none late",
          f"{(late > LATE_MS).sum()} late; p50 {np.percentile(late, 50):.0f}, largest {late.max():.0f} ms",
          f"{len(late)}"),
-        *((f"key to next motion, {name}", f"under {MOTION_MS:.0f} ms",
-           f"median {np.median(ms):.0f}, largest {max(ms):.0f} ms", f"{len(ms)}") for name, ms in motions.items()),
+        *((f"key to {what}, {name}", f"under {MOTION_MS:.0f} ms",
+           f"median {np.median(ms):.0f}, largest {max(ms):.0f} ms", f"{len(ms)}") for what, name, ms in waits),
         ("both logs, per 60 s of mission, without pictures", "under 2 MB", f"{60e-6 * size / seconds:.2f} MB",
          f"1 ({seconds:.0f} s)"),
     ]  # fmt: skip
@@ -238,12 +248,12 @@ def main() -> None:
             command="python -m bench.console",
             how="Headless Chromium and the program on one machine. Poses at 10 Hz, 320 x 240 pictures at 5 Hz; "
             f"viewers are WebSocket clients, a question comes every 2 s and is late after {LATE_MS:.0f} ms. Key to "
-            "motion: the demo missions, kinematic.",
+            "motion: the demo missions, kinematic; a drone that flies while it waits brakes first, then thinks, then "
+            f"flies on. Load average of the machine meanwhile: {os.getloadavg()[1]:.0f} on {os.cpu_count()} cores.",
             tables=[Table(caption="", header=("what", "must", "measured", "n"), rows=rows)],
             notes=[
-                f"Key to next motion, {name}: {sum(one > MOTION_MS for one in ms)} of {len(ms)} miss "
-                f"{MOTION_MS:.0f} ms."
-                for name, ms in motions.items()
+                f"Key to {what}, {name}: {sum(one > MOTION_MS for one in ms)} of {len(ms)} miss {MOTION_MS:.0f} ms."
+                for what, name, ms in waits
                 if max(ms) > MOTION_MS
             ],
         )

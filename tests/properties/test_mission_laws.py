@@ -22,6 +22,9 @@ from mintpilot.core.digest import digest
 from mintpilot.core.inputs import (
     Answered,
     DeliberationEnded,
+    FactConfirmed,
+    FactTold,
+    FactUndone,
     Input,
     Link,
     LinkChanged,
@@ -38,6 +41,7 @@ from mintpilot.core.motion import FollowTrajectory, Land, Motion, MotionEnd
 from mintpilot.core.observation import RegionKind
 from mintpilot.core.query import Answer, Order, Reply
 from mintpilot.core.semantic_map import Cell, Knowledge, Region, SemanticMap
+from mintpilot.core.told import KeepOut, RegionBlocked, RegionPassable, RoomSearched, Standing, ThisOne
 from mintpilot.core.trajectory import FlightEnd, FlightLog, VehicleState
 from mintpilot.mission.directives import (
     Brake,
@@ -104,6 +108,7 @@ class Mission(RuleBasedStateMachine):
         self.clouds = 0
         self.shown: dict[str, dict[str, np.ndarray]] = {}
         self.allowed: dict[str, tuple[np.ndarray, float]] = {}
+        self.told: dict[str, tuple[object, dict[str, np.ndarray]]] = {}
         self.feed(MissionBegun(time_s=0.0, vehicle=self.vehicle()))
 
     def vehicle(self) -> VehicleState:
@@ -182,7 +187,11 @@ class Mission(RuleBasedStateMachine):
         for region in known.regions:
             if region.passable is not Knowledge.YES:
                 open_[region.cells] = True
+        radius_m = parts().mission.limits.radius_m
         for x, y, z in motion.trajectory.position_m[::3]:
+            for left, low, right, high in self.drawn():
+                away = np.hypot(max(left - x, x - right, 0.0), max(low - y, y - high, 0.0))
+                assert away >= radius_m, f"({x:.2f}, {y:.2f}) touches a drawn region"
             origin, edge = known.frame.origin_m, known.frame.resolution_m
             cell = tuple(int((p - o) // edge) for p, o in zip((z, y, x), origin[::-1], strict=True))
             flat = np.ravel_multi_index(cell, known.cells.shape)
@@ -330,6 +339,72 @@ class Mission(RuleBasedStateMachine):
         else:
             self.feed(QuestionReworded(time_s=self.time_s, question=name, text="Say?", worded_by="a model"))
 
+    def drawn(self) -> list[tuple[float, float, float, float]]:
+        """The rectangles that are to be kept out of: left, low, right, high."""
+        stands = {one.known.id: one.known.standing for one in self.state.told}
+        found = []
+        for name, (fact, _) in self.told.items():
+            if isinstance(fact, KeepOut) and stands[name] is Standing.COUNTS:
+                (left, low), (right, high) = fact.corners_m[0], fact.corners_m[2]
+                found.append((left, low, right, high))
+        return found
+
+    @precondition(lambda self: not self.calm)
+    @rule(data=st.data())
+    def something_is_told(self, data: st.DataObject) -> None:
+        names = [*(r.id for r in self.map.regions), "smoke-99"]
+        left, low = data.draw(st.floats(0.0, 11.0)), data.draw(st.floats(0.0, 7.0))
+        right, high = left + data.draw(st.floats(0.1, 2.0)), low + data.draw(st.floats(0.1, 2.0))
+        kinds = {
+            "draw": lambda: KeepOut(corners_m=((left, low), (right, low), (right, high), (left, high))),
+            "block": lambda: RegionBlocked(region=data.draw(st.sampled_from(names))),
+            "pass": lambda: RegionPassable(region=data.draw(st.sampled_from(names))),
+            "search": lambda: RoomSearched(room=data.draw(st.sampled_from([*(r.id for r in self.map.rooms), "x"]))),
+            "mean": lambda: ThisOne(thing=data.draw(st.sampled_from([*(o.id for o in self.map.objects), "x"]))),
+        }
+        fact = kinds[data.draw(st.sampled_from(sorted(kinds)))]()
+        before = self.state.beliefs
+        outlines = {r.id: r.cells for r in before.map.regions} if before is not None else {}
+        self.feed(FactTold(time_s=self.time_s, fact=fact, operator="somebody"))
+        if len(self.state.told) > len(self.told):
+            self.told[self.state.told[-1].known.id] = (fact, outlines)
+        if before is not None and self.state.beliefs is not None:
+            after = self.state.beliefs
+            assert entered(after.map) <= entered(before.map), "what is told never opens a region unconfirmed"
+            assert after.confirmed <= before.confirmed
+            assert searched(after.map) <= searched(before.map)
+            assert after.belief is before.belief, "nothing is learnt before it is confirmed"
+
+    @precondition(lambda self: bool(self.told))
+    @rule(data=st.data())
+    def something_told_is_confirmed(self, data: st.DataObject) -> None:
+        name = data.draw(st.sampled_from(sorted(self.told)))
+        fact, outlines = self.told[name]
+        before = self.state
+        self.feed(FactConfirmed(time_s=self.time_s, told=name))
+        stood = next(one.known.standing for one in before.told if one.known.id == name)
+        if stood is Standing.READ_BACK and isinstance(fact, RegionPassable) and not self.ended:
+            self.allowed[fact.region] = (outlines[fact.region], before.clock_s)
+        elif stood is not Standing.READ_BACK and before.beliefs is not None and self.state.beliefs is not None:
+            assert self.state.beliefs.confirmed <= before.beliefs.confirmed, "only what is read back is confirmed"
+
+    @precondition(lambda self: bool(self.told))
+    @rule(data=st.data())
+    def something_told_is_undone(self, data: st.DataObject) -> None:
+        name = data.draw(st.sampled_from(sorted(self.told)))
+        fact, _ = self.told[name]
+        self.feed(FactUndone(time_s=self.time_s, told=name))
+        beliefs = self.state.beliefs
+        if self.ended or beliefs is None:
+            return
+        assert not any(region.id == name for region in beliefs.map.regions)
+        last = [f for n, (f, _) in self.told.items() if n == name or self.stands(n) is Standing.COUNTS]
+        if isinstance(fact, RoomSearched) and last.count(fact) == 1:
+            assert fact.room not in searched(beliefs.map) or f"look:{fact.room}" in beliefs.finished
+
+    def stands(self, name: str) -> Standing:
+        return next(one.known.standing for one in self.state.told if one.known.id == name)
+
     @precondition(lambda self: not self.calm)
     @rule(order=st.sampled_from(Order))
     def an_order(self, order: Order) -> None:
@@ -410,6 +485,11 @@ def grown(cells: np.ndarray, shape: tuple[int, ...]) -> np.ndarray:
 def entered(map: SemanticMap) -> set[str]:
     """Ids of the regions that may be flown through."""
     return {region.id for region in map.regions if region.passable is Knowledge.YES}
+
+
+def searched(map: SemanticMap) -> set[str]:
+    """Ids of the rooms that nobody needs to look into."""
+    return {room.id for room in map.rooms if room.searched}
 
 
 Mission.TestCase.settings = settings(

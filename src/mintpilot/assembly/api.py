@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, TypeAlias, cast
 
 from mintpilot.assembly.components import Choices, VehicleChoice, components_for, deliberation_parts, scripted_operator
 from mintpilot.assembly.deliberation_report import DeliberationReport, deliberation_report
+from mintpilot.assembly.earlier_map import earlier_map
 from mintpilot.assembly.policies import make_planner
 from mintpilot.assembly.registry import names
 from mintpilot.assembly.strategies import Argument, strategy_label
@@ -113,6 +114,8 @@ def run_mission(
     perception: str | None = None,
     accept_failsafes: bool = False,
     briefs: bool = False,
+    views: bool = False,
+    earlier: Path | None = None,
 ) -> MissionRecord:
     """Flies a mission and keeps what happened.
 
@@ -138,13 +141,15 @@ def run_mission(
         accept_failsafes: fly a real vehicle although its autopilot's fail-safes are not as they should be.
         briefs: whether the operator is asked go or no-go before take-off. One always is where a language model read the
             instruction.
+        views: whether ``progress`` also gets pictures for a person who watches, up to five a second.
+        earlier: run folder of a mission in the same place, whose map this one begins with in place of a survey.
 
     Returns:
         The record. How the mission ended is `MissionRecord.outcome`; an ending short of success is no exception.
 
     Raises:
         InputError: the mission, or a name, is wrong.
-        RecordError: the run folder cannot be written.
+        RecordError: the run folder cannot be written, or ``earlier`` not be read.
         MissingPartError: MuJoCo is chosen, a language model or a real vehicle, but not what it needs is installed.
         DeviceError: a real vehicle cannot be reached, or is not ready to fly.
     """
@@ -161,6 +166,8 @@ def run_mission(
         accept_failsafes=accept_failsafes,
         perception=perception or file.perception.use,
         briefs=briefs,
+        views=views,
+        earlier=None if earlier is None else earlier_map(earlier),
         namers=tuple(file.perception.namers) if perception in (None, file.perception.use) else (),
         calibration=_calibration(file, folder) if perception in (None, file.perception.use) else None,
     )

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mintpilot.assembly.briefing import briefing_of
+from mintpilot.assembly.earlier_map import EarlierMap
 from mintpilot.assembly.policies import make_metric, make_planner
 from mintpilot.assembly.stated_looks import with_stated_looks
 from mintpilot.assembly.strategies import Argument, make_objective, make_strategy, strategy_label
@@ -70,6 +71,10 @@ class Choices:
     calibration: Path | None = None
     """File of measured confidences of the namers; None: as they say them."""
     camera_size: tuple[int, int] = (320, 240)
+    earlier: EarlierMap | None = None
+    """The map of an earlier mission, to begin with in place of a survey; None: there is none."""
+    views: bool = False
+    """Whether somebody watches the camera's pictures while it is flown."""
     briefs: bool = False
     """Whether go or no-go is asked before take-off. It always is where a language model read the instruction."""
 
@@ -186,13 +191,23 @@ class _Components(AbstractContextManager[MissionComponents]):
             )
             self._perception = perception
             builder = map_builder(world)
-            surveys = world.mission.survey is not None
-            if surveys:
+            earlier = choices.earlier
+            surveys = world.mission.survey is not None and earlier is None
+            if earlier is not None:
+                builder.begin_with(earlier.map)
+            if surveys or earlier is not None:
                 # Whoever puts the drone down vouches for the space around it: the camera never sees it.
                 builder.mark_flown(np.asarray([world.mission.start_m], float), TAKE_OFF_CLEAR_M)
             camera = CameraMapSource(camera=simulator, perception=perception, builder=builder, recorder=self._recorder)
             source: MapSource = KeepAwayMapSource(camera, world) if world.task.keep_away else camera
-            return self._made(simulator, source, surveys=surveys, watch_map=True)
+            known = earlier.map if earlier is not None else None if surveys else world.map
+            made = self._made(simulator, source, surveys=surveys, known=known, watch_map=True)
+            viewed = simulator if choices.views else None
+            return replace(made, viewed=viewed, begins_with=earlier.words if earlier is not None else "")
+        if choices.earlier is not None:
+            raise InputError(
+                "--map needs a camera, which looks again at what was free: fly with --vehicle mujoco, or leave it out"
+            )
         photographs = [g for g in world.task.subgoals if g.action is Action.PHOTOGRAPH]
         if photographs:
             raise InputError(
@@ -211,7 +226,7 @@ class _Components(AbstractContextManager[MissionComponents]):
         if world.mission.looks:
             given = with_stated_looks(given, world, kinematic.state)
         changes = any(solid.appears_s > 0 for solid in world.scene.solids)
-        return self._made(kinematic, given, surveys=False, watch_map=changes)
+        return self._made(kinematic, given, surveys=False, known=world.map, watch_map=changes)
 
     def _beside_vehicle(self) -> MissionComponents:
         """A real vehicle on a given map. Nobody judges it, and it ends on the ground."""
@@ -243,10 +258,16 @@ class _Components(AbstractContextManager[MissionComponents]):
         return (*self._talk.take_remarks(), *seen)
 
     def _made(
-        self, simulator: MujocoSimulator | KinematicSimulator, source: MapSource, *, surveys: bool, watch_map: bool
+        self,
+        simulator: MujocoSimulator | KinematicSimulator,
+        source: MapSource,
+        *,
+        surveys: bool,
+        known: SemanticMap | None,
+        watch_map: bool,
     ) -> MissionComponents:
         return replace(
-            self._common(simulator, source, known=None if surveys else self._world.map, watch_map=watch_map),
+            self._common(simulator, source, known=known, watch_map=watch_map),
             begin_task=simulator.begin_mission,
             judge=simulator,
             surveys=surveys,

@@ -126,11 +126,13 @@ def run(
     llm: Llm = None,
     lang: Lang = None,
     perception: str | None = None,
+    map: Path | None = None,
     accept_failsafes: Flag = False,
     host: str | None = None,
     port: Port = None,
     tls_cert: Path | None = None,
     tls_key: Path | None = None,
+    tls_self_signed: Path | None = None,
     out: Path | None = None,
     json: Json = False,
     debug: Flag = False,
@@ -152,11 +154,15 @@ def run(
         llm: Language model for words: template (none), endpoint, embedded, or a plug-in's. Default: as the file says.
         lang: Language of the questions: en, de, fr or es. Default: as the file says.
         perception: Who makes objects of pictures: geometric, segments, or a plug-in's. Default: as the file says.
+        map: Run folder of an earlier mission in the same place: this one begins with its map, in place of a survey. Its
+            age is told; what was free is looked at again as it comes into view; what was permitted is asked again.
         accept_failsafes: Fly a real vehicle although its autopilot's fail-safes are not as they should be.
         host: Of the web page: where it is served. Default: 127.0.0.1, for this machine only; elsewhere with TLS only.
         port: Of the web page. Default: any that is free.
         tls_cert: Of the web page: its certificate, PEM.
         tls_key: Of the web page: the certificate's key, PEM.
+        tls_self_signed: Of the web page: a folder in which a self-signed pair is made, and used again next time.
+            Browsers warn of it once; its fingerprint is printed.
         out: Run folder; a new one under ./runs by default.
         json: Print the outcome, questions, gaps and figures as one JSON object, and nothing else, on standard output.
             The whole record is in the run folder.
@@ -172,11 +178,18 @@ def run(
     page = None
     if "console" in people:
         patience_s = BESIDE_S if len(people) > 1 else None
+        if tls_self_signed is not None and (tls_cert, tls_key) != (None, None):
+            return fail("--tls-self-signed makes a pair: leave out --tls-cert and --tls-key", as_json=json)
         page = PageOptions(
-            host=host or "127.0.0.1", port=port or 0, tls_cert=tls_cert, tls_key=tls_key, patience_s=patience_s
+            host=host or "127.0.0.1",
+            port=port or 0,
+            tls_cert=tls_cert,
+            tls_key=tls_key,
+            tls_self_signed=tls_self_signed,
+            patience_s=patience_s,
         )
-    elif (host, port, tls_cert, tls_key) != (None, None, None, None):
-        return fail("--host, --port, --tls-cert and --tls-key go with --operator console only", as_json=json)
+    elif (host, port, tls_cert, tls_key, tls_self_signed) != (None,) * 5:
+        return fail("--host, --port and --tls-... go with --operator console only", as_json=json)
     options = FlightOptions(
         operators=people,
         page=page,
@@ -191,6 +204,7 @@ def run(
         llm=llm,
         lang=lang,
         perception=perception,
+        earlier=map,
         accept_failsafes=accept_failsafes,
     )
     return guarded(lambda: fly(mission, options), as_json=json, debug=debug)
@@ -448,6 +462,7 @@ def doctor(*, audio: Flag = False, json: Json = False, debug: Flag = False) -> E
 @app.command(
     help_epilogue=examples(
         "mintpilot replay runs/2026-11-28T10-00-00-fire-warehouse",
+        "mintpilot replay runs/2026-11-28T10-00-00-fire-warehouse --page",
         "mintpilot replay runs/2026-11-28T10-00-00-fire-warehouse --verify",
     )
 )
@@ -456,21 +471,32 @@ def replay(
     /,
     *,
     verify: Flag = False,
+    page: bool | None = None,
+    port: int = 0,
     json: Json = False,
     debug: Flag = False,
 ) -> ExitCode:
     """Show a recorded mission again, or think it through again and compare.
 
+    It prints the report, and opens the console's page on the run, finished or broken off: any moment of it, with the
+    map, the questions, the tree and the log as they were. Nothing can be answered there.
+
     Args:
         run: The run folder.
         verify: Feed the recorded events to the mission again: every step must be equal bit for bit, every deliberation
             within 1e-9. The first difference is shown with the event before it.
+        page: Serve the page until Ctrl-C. Default: where a browser can be opened.
+        port: Of the page. Default: any that is free.
         json: Print one JSON object, and nothing else, on standard output.
         debug: Show the traceback of an error.
     """
     from mintpilot.cli.replaying import replay_run
 
-    return guarded(lambda: replay_run(run, verify=verify, as_json=json), as_json=json, debug=debug)
+    if page and (verify or json):
+        return fail("--page shows a run to a person: give it without --verify and --json", as_json=json)
+    return guarded(
+        lambda: replay_run(run, verify=verify, page=page, port=port, as_json=json), as_json=json, debug=debug
+    )
 
 
 app.command(bench)

@@ -32,6 +32,8 @@ class PageOptions:
     """0: any that is free."""
     tls_cert: Path | None = None
     tls_key: Path | None = None
+    tls_self_signed: Path | None = None
+    """Folder in which a self-signed pair is made, or used again, in place of a pair that was given."""
     opens: bool = False
     """Whether a browser is opened on it."""
     patience_s: float | None = None
@@ -67,7 +69,20 @@ class ServedPage:
         from mintpilot.console import Address, Role, WebConsole
 
         options = self._options
-        address = Address(host=options.host, port=options.port, tls_cert=options.tls_cert, tls_key=options.tls_key)
+        cert, key = options.tls_cert, options.tls_key
+        if options.tls_self_signed is not None:
+            from mintpilot.console.self_signed import self_signed
+
+            pair = self_signed(options.tls_self_signed, options.host)
+            cert, key = pair.cert, pair.key
+            self._console.print(
+                f"Browsers will warn of a certificate that nobody vouches for. Compare its SHA-256 fingerprint:\n"
+                f"{pair.fingerprint}",
+                highlight=False,
+                soft_wrap=True,
+                markup=False,
+            )
+        address = Address(host=options.host, port=options.port, tls_cert=cert, tls_key=key)
         page = WebConsole(understand=talk.understand, order_of=talk.order_of, address=address)
         self._stack.callback(page.close)
         self._page = page

@@ -66,7 +66,8 @@ class Address:
             raise InputError(f"port {self.port}: it must be from 0 (any that is free) to 65535")
         if not self.is_local and not self.is_safe:
             raise InputError(
-                f"--host {self.host} is reached by other machines: give --tls-cert and --tls-key, or leave --host out"
+                f"--host {self.host} is reached by other machines: give --tls-cert and --tls-key, or --tls-self-signed "
+                "and a folder, or leave --host out"
             )
 
     @property

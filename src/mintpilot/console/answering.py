@@ -8,12 +8,34 @@ from concurrent.futures import TimeoutError as NotYet
 from dataclasses import dataclass, replace
 
 from mintpilot.console.desk import Asked
-from mintpilot.console.protocol import AnyCommand, MoreTime, Ordering, Pointed, QuestionSeen, Replied, Said
-from mintpilot.core.inputs import Answered, MoreTimeWanted, OperatorInput, Ordered, QuestionShown
+from mintpilot.console.protocol import (
+    AnyCommand,
+    Confirmed,
+    Drew,
+    MoreTime,
+    Ordering,
+    Pointed,
+    QuestionSeen,
+    Replied,
+    Said,
+    ToldOf,
+    TookBack,
+)
+from mintpilot.core.inputs import (
+    Answered,
+    FactConfirmed,
+    FactTold,
+    FactUndone,
+    MoreTimeWanted,
+    OperatorInput,
+    Ordered,
+    QuestionShown,
+)
 from mintpilot.core.ports import Understand
 from mintpilot.core.predicate import Literal, Saying, SayingKind
 from mintpilot.core.query import YES_PART, Answer, Evidence, Query, Question, Reply, Standing
 from mintpilot.core.reading import AnsweredBy, Reading, ReadingKind, guarded_replies, opposite
+from mintpilot.core.told import Fact, KeepOut, RegionBlocked, RegionPassable, RoomSearched, ThisOne
 from mintpilot.interaction.answers import answer_of
 
 AT_ONCE_S = 0.02
@@ -85,6 +107,15 @@ class Answering:
                 return self._pointed(asked, command, time_s)
             case Said():
                 return self._said(asked, command, time_s)
+            case Drew():
+                return _told(KeepOut(corners_m=command.corners), asked, time_s)
+            case ToldOf():
+                return _told(_fact(command), asked, time_s)
+            case Confirmed():
+                done = FactConfirmed(time_s=time_s, told=command.told, operator=asked.who)
+                return Heard(events=(done,))
+            case TookBack():
+                return Heard(events=(FactUndone(time_s=time_s, told=command.told, operator=asked.who),))
             case _:
                 return Heard()
 
@@ -214,6 +245,22 @@ class Answering:
         turn.question = replace(turn.question, read_back=None)
         turn.again = True
         return Heard(changed=True)
+
+
+def _told(fact: Fact, asked: Asked, time_s: float) -> Heard:
+    return Heard(events=(FactTold(time_s=time_s, fact=fact, operator=asked.who),))
+
+
+def _fact(command: ToldOf) -> Fact:
+    match command.fact:
+        case "blocked":
+            return RegionBlocked(region=command.subject)
+        case "passable":
+            return RegionPassable(region=command.subject)
+        case "searched":
+            return RoomSearched(room=command.subject)
+        case "this-one":
+            return ThisOne(thing=command.subject)
 
 
 def _answered(question: str, answer: Answer, asked: Asked, time_s: float) -> Heard:

@@ -6,6 +6,7 @@ import json
 import threading
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import Protocol
 
 from pydantic import BaseModel
 
@@ -13,10 +14,26 @@ LONGEST_STREAM = 4000
 """Items kept of a stream; a browser that comes later gets those."""
 
 
+Text = str | bytes
+"""What is sent over the WebSocket."""
+
+
+class Panes(Protocol):
+    """Where panes and streams are shown, or kept."""
+
+    def put(self, name: str, pane: BaseModel, payload: bytes | None = None) -> None:
+        """Replaces a pane."""
+        ...
+
+    def append(self, name: str, item: BaseModel) -> None:
+        """Adds an item to a stream."""
+        ...
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Pane:
     version: int
-    message: str | bytes
+    message: Text
 
 
 @dataclass(slots=True)
@@ -46,11 +63,10 @@ class Board:
 
     def put(self, name: str, pane: BaseModel, payload: bytes | None = None) -> None:
         """Replaces a pane. With a payload (a picture) it is sent as one binary message: length, head, payload."""
-        head = f'{{"pane":{json.dumps(name)},"data":{pane.model_dump_json()}}}'
-        message: str | bytes = head
-        if payload is not None:
-            encoded = head.encode()
-            message = len(encoded).to_bytes(4, "big") + encoded + payload
+        self.put_message(name, message_of(name, pane, payload))
+
+    def put_message(self, name: str, message: Text) -> None:
+        """Replaces a pane by a message that was made before."""
         with self._lock:
             self._version += 1
             self._panes[name] = _Pane(version=self._version, message=message)
@@ -67,6 +83,12 @@ class Board:
                 del stream.items[:half]
         self._wake()
 
+    def put_stream(self, name: str, items: list[str]) -> None:
+        """Replaces a stream by more or fewer of its items; browsers that have more drop the rest."""
+        with self._lock:
+            self._streams[name] = _Stream(items=items)
+        self._wake()
+
     def news(self, cursor: Cursor) -> str | bytes | None:
         """The next thing that this browser has not got, the question before all else; None: it has everything."""
         with self._lock:
@@ -76,9 +98,10 @@ class Board:
                 cursor.panes[name] = self._panes[name].version
                 return self._panes[name].message
             for name, stream in self._streams.items():
-                at = max(cursor.streams.get(name, 0), stream.begun)
+                had = cursor.streams.get(name, 0)
+                at = min(max(had, stream.begun), stream.begun + len(stream.items))
                 fresh = stream.items[at - stream.begun :]
-                if fresh:
+                if fresh or at < had:
                     cursor.streams[name] = at + len(fresh)
                     return f'{{"stream":{json.dumps(name)},"from":{at},"items":[{",".join(fresh)}]}}'
         return None
@@ -100,4 +123,13 @@ class Board:
             wake()
 
 
-_URGENCY = {"question": 0, "mission": 0, "pose": 2, "camera": 3}
+def message_of(name: str, pane: BaseModel, payload: bytes | None) -> Text:
+    """A pane as it is sent: text, or with a payload length, head and payload."""
+    head = f'{{"pane":{json.dumps(name)},"data":{pane.model_dump_json()}}}'
+    if payload is None:
+        return head
+    encoded = head.encode()
+    return len(encoded).to_bytes(4, "big") + encoded + payload
+
+
+_URGENCY = {"question": 0, "mission": 0, "told": 0, "pose": 2, "camera": 3}

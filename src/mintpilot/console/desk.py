@@ -7,7 +7,16 @@ from collections import deque
 from dataclasses import dataclass, field
 
 from mintpilot.console.access import Role
-from mintpilot.console.protocol import AnyCommand, LeaveSeat, Ordering, QuestionSeen, SeatPane, TakeSeat
+from mintpilot.console.protocol import (
+    AnyCommand,
+    LeaveSeat,
+    Ordering,
+    Playing,
+    QuestionSeen,
+    SeatPane,
+    Seek,
+    TakeSeat,
+)
 
 MOST_WAITING = 200
 """Commands that wait for the mission; more than that are refused, orders never."""
@@ -38,8 +47,12 @@ class Client:
 
 @dataclass(slots=True)
 class Desk:
-    """Thread-safe. One browser has the seat: it answers. Whoever may answer may give orders and take the seat over."""
+    """Thread-safe. One browser has the seat: it answers. Whoever may answer may give orders and take the seat over.
 
+    Beside a recorded mission nobody answers: whoever has the address may go to other moments.
+    """
+
+    replays: bool = False
     _lock: threading.Lock = field(default_factory=threading.Lock)
     _clients: list[Client] = field(default_factory=list)
     _inbox: deque[Asked] = field(default_factory=deque)
@@ -65,8 +78,8 @@ class Desk:
         """What that browser may do."""
         with self._lock:
             return SeatPane(
-                may_answer=client.role is Role.ANSWER,
-                seated=client.role is Role.ANSWER and client.browser == self._seat,
+                may_answer=client.role is Role.ANSWER and not self.replays,
+                seated=client.role is Role.ANSWER and client.browser == self._seat and not self.replays,
                 taken=any(c.browser == self._seat for c in self._clients),
                 viewers=len({c.browser for c in self._clients}),
             )
@@ -81,7 +94,11 @@ class Desk:
                 return False
             if command.n <= self._seen.get(client.browser, 0):
                 return True
-            if isinstance(command, TakeSeat):
+            if self.replays or isinstance(command, Seek | Playing):
+                if not (self.replays and isinstance(command, Seek | Playing)) or len(self._inbox) >= MOST_WAITING:
+                    return False
+                self._inbox.append(Asked(command=command, who=client.who))
+            elif isinstance(command, TakeSeat):
                 self._seat = client.browser
             elif isinstance(command, LeaveSeat):
                 self._seat = "" if self._seat == client.browser else self._seat

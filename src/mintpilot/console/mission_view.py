@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
-from mintpilot.console.board import Board
+from mintpilot.console.board import Panes
 from mintpilot.console.map_pane import map_pane
-from mintpilot.console.pictures import Pictures
+from mintpilot.console.pictures import Pictures, as_jpeg
 from mintpilot.console.protocol import (
     AnswerLine,
     FlownPoint,
@@ -20,12 +21,14 @@ from mintpilot.console.protocol import (
 )
 from mintpilot.console.question_pane import path_points, question_pane
 from mintpilot.console.steps import Progress
+from mintpilot.console.told_pane import told_pane
 from mintpilot.console.tree_pane import tree_pane
 from mintpilot.core.decisions import AskQuestion, Explore, FlyPlan, FlyTrajectory, GoBack
 from mintpilot.core.events import (
     Asked,
     Deliberated,
     Event,
+    FactsChanged,
     FrameSeen,
     LegFlown,
     MapUpdated,
@@ -34,7 +37,9 @@ from mintpilot.core.events import (
     Noticed,
     OrderTaken,
     PlanChosen,
+    QuestionTimed,
     Stepped,
+    ViewTaken,
 )
 from mintpilot.core.geometry import Floats
 from mintpilot.core.inputs import (
@@ -42,11 +47,10 @@ from mintpilot.core.inputs import (
     DeliberationEnded,
     MapObserved,
     MissionBegun,
-    MoreTimeWanted,
     MotionEnded,
-    QuestionShown,
     Ticked,
 )
+from mintpilot.core.mission import Verdict
 from mintpilot.core.query import Evidence, Question
 from mintpilot.core.semantic_map import SemanticMap
 from mintpilot.core.trajectory import VehicleState
@@ -66,11 +70,12 @@ class MissionView:
 
     Args:
         board: where the panes stand.
+        jpeg_of: the picture of an event; None: there is none any more.
     """
 
-    def __init__(self, board: Board) -> None:
+    def __init__(self, board: Panes, jpeg_of: Callable[[FrameSeen], bytes | None] = as_jpeg) -> None:
         self._board = board
-        self._pictures = Pictures(board)
+        self._pictures = Pictures(board, jpeg_of)
         self._started: MissionStarted | None = None
         self._map: SemanticMap | None = None
         self._drawn_s = -math.inf
@@ -85,9 +90,8 @@ class MissionView:
         self._tree_shown: TreePane | None = None
         self._earlier: tuple[TreeRound, ...] = ()
         self._question: Question | None = None
+        self._timed: QuestionTimed | None = None
         self._deadline_s = 0.0
-        self._patience_s = 0.0
-        self._shown = self._extended = False
 
     # What the operator port is told
 
@@ -95,8 +99,6 @@ class MissionView:
         """The card of an open question, or the same one in other words, or with a read-back."""
         open_ = self._question
         if open_ is None or open_.id != question.id:
-            self._shown = self._extended = False
-            self._patience_s = patience_s
             self._log("question", question.text)
         self._deadline_s = self._clock_s + patience_s
         self._question = question
@@ -128,6 +130,8 @@ class MissionView:
                 self._stepped(event)
             case FrameSeen():
                 self._pictures.seen(event)
+            case ViewTaken():
+                self._pictures.viewed(event)
             case MissionStarted():
                 self._begun(event)
             case MapUpdated():
@@ -145,6 +149,12 @@ class MissionView:
                 self._log("order", f"{event.order.value}: {event.answer}" if event.answer else event.order.value)
             case Noticed():
                 self._log("note", event.text)
+            case QuestionTimed():
+                self._timed = event
+                if self._is_open(event.question):
+                    self._show()
+            case FactsChanged():
+                self._board.put("told", told_pane(event))
             case MissionEnded():
                 self._ended(event)
             case _:
@@ -157,9 +167,10 @@ class MissionView:
         self._steps()
         self._log("begun", event.mission.instruction)
 
-    def _mission(self, verdict: str = "", reason: str = "") -> None:
+    def _mission(self, verdict: Verdict | None = None) -> None:
         assert self._started is not None
         mission = self._started.mission
+        (left, bottom, _), (right, top, _) = mission.volume.lo_m, mission.volume.hi_m
         self._board.put(
             "mission",
             MissionPane(
@@ -168,9 +179,12 @@ class MissionView:
                 lang=self._started.language,
                 strategy=self._started.strategy,
                 start=mission.start_m,
+                volume=(left, bottom, right, top),
                 briefing=self._started.briefing.lines if self._started.briefing is not None else (),
-                verdict=verdict,
-                reason=reason,
+                verdict=verdict.outcome.value if verdict is not None else "",
+                reason=verdict.reason if verdict is not None else "",
+                waited_s=verdict.waiting.delay_s if verdict is not None else 0.0,
+                hidden_s=verdict.waiting.hidden_s if verdict is not None else 0.0,
             ),
         )
 
@@ -178,7 +192,7 @@ class MissionView:
         if self._question is not None:
             self.withdraw(self._question.id, "the mission is over")
         if self._started is not None:
-            self._mission(event.verdict.outcome.value, event.verdict.reason)
+            self._mission(event.verdict)
         self._log("ended", event.verdict.reason)
 
     def _stepped(self, event: Stepped) -> None:
@@ -192,14 +206,6 @@ class MissionView:
                 self._draw(input.map)
             case DeliberationEnded():
                 self._decided(input)
-            case QuestionShown() if self._is_open(input.question) and not self._shown:
-                self._shown = True
-                self._deadline_s = input.time_s + self._patience_s
-                self._show()
-            case MoreTimeWanted() if self._is_open(input.question) and not self._extended:
-                self._extended = True
-                self._deadline_s += self._patience_s
-                self._show()
             case Answered():
                 said = input.answer.text or input.answer.reply.value
                 self._log("answer", f"{said} ({input.operator})" if input.operator else said)
@@ -295,13 +301,14 @@ class MissionView:
         if question is None:
             return
         lang = self._started.language if self._started is not None else "en"
+        timed = self._timed if self._timed is not None and self._timed.question == question.id else None
         pane = question_pane(
             question,
             self._asked,
             self._explanations,
             lang=lang,
-            deadline_s=self._deadline_s,
-            extended=self._extended,
+            deadline_s=timed.deadline_s if timed is not None else self._deadline_s,
+            extended=timed is not None and timed.extended,
             again=again,
         )
         self._board.put("question", pane)

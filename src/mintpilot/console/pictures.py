@@ -4,10 +4,14 @@ from __future__ import annotations
 
 import io
 from collections import OrderedDict
+from collections.abc import Callable
 
-from mintpilot.console.board import Board
+import numpy as np
+
+from mintpilot.console.board import Panes
 from mintpilot.console.protocol import PictureBox, PicturePane
-from mintpilot.core.events import FrameSeen
+from mintpilot.core.events import FrameSeen, ViewTaken
+from mintpilot.core.geometry import Floats
 from mintpilot.core.query import Question
 from mintpilot.core.semantic_map import SemanticMap
 
@@ -15,7 +19,18 @@ MOST_KEPT = 1000
 """Pictures kept as JPEG; the oldest are thrown away first."""
 MOST_SHOWN = 4
 """Pictures shown beside one question."""
+STILL = 0.05
+"""A camera that has moved by less than this, metres, or turned by about as many radians, shows the same."""
 _QUALITY = 80
+
+
+def as_jpeg(event: FrameSeen | ViewTaken) -> bytes:
+    """The picture that was just taken."""
+    from PIL import Image
+
+    out = io.BytesIO()
+    Image.fromarray(event.frame.rgb).save(out, "JPEG", quality=_QUALITY)
+    return out.getvalue()
 
 
 class Pictures:
@@ -23,26 +38,40 @@ class Pictures:
 
     Args:
         board: where they are shown.
+        jpeg_of: the picture of an event; None: there is none any more.
     """
 
-    def __init__(self, board: Board) -> None:
-        self._board = board
+    def __init__(self, board: Panes, jpeg_of: Callable[[FrameSeen], bytes | None] = as_jpeg) -> None:
+        self._board, self._jpeg_of = board, jpeg_of
         self._kept: OrderedDict[int, tuple[float, bytes]] = OrderedDict()
+        self._last: tuple[Floats, PicturePane] | None = None
 
     def seen(self, event: FrameSeen) -> None:
         """A new picture, with what was found in it."""
-        from PIL import Image
-
-        out = io.BytesIO()
-        Image.fromarray(event.frame.rgb).save(out, "JPEG", quality=_QUALITY)
-        self._kept[event.index] = (event.frame.time_s, out.getvalue())
+        jpeg = self._jpeg_of(event)
+        if jpeg is None:
+            return
+        self._kept[event.index] = (event.frame.time_s, jpeg)
         if len(self._kept) > MOST_KEPT:
             self._kept.popitem(last=False)
         boxes = tuple(
             PictureBox(id="", words=d.label, box=_box(d.pixels)) for d in event.detections if d.pixels[2] > d.pixels[0]
         )
         pane = PicturePane(frame=event.index, time_s=round(event.frame.time_s, 2), boxes=boxes)
-        self._board.put("camera", pane, out.getvalue())
+        self._last = (event.frame.world_from_camera, pane)
+        self._board.put("camera", pane, jpeg)
+
+    def viewed(self, event: ViewTaken) -> None:
+        """A picture between two of those; what was found is still outlined while the camera is where it was."""
+        frame, index = event.frame, -1
+        boxes: tuple[PictureBox, ...] = ()
+        if self._last is not None:
+            where, pane = self._last
+            index = pane.frame
+            if float(np.abs(frame.world_from_camera - where).max()) < STILL:
+                boxes = pane.boxes
+        pane = PicturePane(frame=index, time_s=round(frame.time_s, 2), boxes=boxes)
+        self._board.put("camera", pane, as_jpeg(event))
 
     def about(self, question: Question, map: SemanticMap | None) -> None:
         """The pictures in which the things are that the question is about, with their outlines."""

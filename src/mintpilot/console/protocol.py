@@ -7,6 +7,7 @@ from typing import Annotated, Literal, TypeAlias
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter
 
 from mintpilot.core.query import Order
+from mintpilot.core.told import MOST_CORNERS
 
 LONGEST_BYTES = 4096
 """A message of a browser may be no longer than this, bytes."""
@@ -87,6 +88,56 @@ class Ordering(Command):
     order: Order
 
 
+Metres: TypeAlias = Annotated[float, Field(ge=-1e5, le=1e5, allow_inf_nan=False)]
+
+
+class Drew(Command):
+    """A region was drawn on the map: the drone stays out of it."""
+
+    kind: Literal["keep-out"] = "keep-out"
+    corners: Annotated[tuple[tuple[Metres, Metres], ...], Field(min_length=3, max_length=MOST_CORNERS)]
+    """x, y of each corner in order, metres in the world."""
+
+
+class ToldOf(Command):
+    """Something that the person knows of a thing, region or room on the map."""
+
+    kind: Literal["tell"] = "tell"
+    fact: Literal["blocked", "passable", "searched", "this-one"]
+    subject: Name
+
+
+class Confirmed(Command):
+    """What was told and read back is right."""
+
+    kind: Literal["confirm"] = "confirm"
+    told: Name
+
+
+class TookBack(Command):
+    """What was told, or read back, does not hold."""
+
+    kind: Literal["undo"] = "undo"
+    told: Name
+
+
+class Seek(Command):
+    """Of a recorded mission: show another moment."""
+
+    kind: Literal["seek"] = "seek"
+    time_s: Annotated[float, Field(ge=0, le=1e7, allow_inf_nan=False)] = 0.0
+    moment: Annotated[int, Field(ge=0, le=10**6)] | None = None
+    """Index of one of `ReplayPane.moments`, which then counts instead of the time."""
+
+
+class Playing(Command):
+    """Of a recorded mission: let time pass, or stop it."""
+
+    kind: Literal["play"] = "play"
+    speed: Annotated[float, Field(ge=0, le=64, allow_inf_nan=False)]
+    """Mission seconds per second; 0: stop."""
+
+
 class TakeSeat(Command):
     """This browser answers from now on."""
 
@@ -100,7 +151,21 @@ class LeaveSeat(Command):
 
 
 AnyCommand: TypeAlias = Annotated[
-    QuestionSeen | Replied | Pointed | Said | MoreTime | Ordering | TakeSeat | LeaveSeat, Field(discriminator="kind")
+    QuestionSeen
+    | Replied
+    | Pointed
+    | Said
+    | MoreTime
+    | Ordering
+    | Drew
+    | ToldOf
+    | Confirmed
+    | TookBack
+    | Seek
+    | Playing
+    | TakeSeat
+    | LeaveSeat,
+    Field(discriminator="kind"),
 ]
 COMMANDS: TypeAdapter[AnyCommand] = TypeAdapter(AnyCommand)
 
@@ -117,10 +182,16 @@ class MissionPane(Message):
     lang: str
     strategy: str
     start: Point
+    volume: Box
+    """Where it may fly: left, bottom, right, top."""
     briefing: tuple[str, ...] = ()
     verdict: str = ""
     """Empty while it goes on."""
     reason: str = ""
+    waited_s: float = 0.0
+    """What waiting for answers took in all; known once it is over."""
+    hidden_s: float = 0.0
+    """Of that, what was flown meanwhile and had to be flown anyway."""
 
 
 class PosePane(Message):
@@ -324,6 +395,48 @@ class LogLine(Message):
     time_s: float
     kind: str
     text: str
+
+
+class Moment(Message):
+    """Something worth going to in a recorded mission."""
+
+    time_s: float
+    kind: str
+    """As in the log."""
+
+
+class ReplayPane(Message):
+    """A recorded mission, and what is shown of it."""
+
+    time_s: float
+    to_s: float
+    speed: float
+    """0: it stands still."""
+    moments: tuple[Moment, ...]
+    passed: int = 0
+    """How many of these are shown by now."""
+    exact: bool = False
+    """Whether the last of these is what is shown."""
+
+
+class ToldLine(Message):
+    """One fact that an operator told."""
+
+    id: str
+    fact: Literal["keep-out", "blocked", "passable", "searched", "this-one"]
+    words: str
+    """What it speaks of; empty for a drawn region."""
+    who: str
+    time_s: float
+    standing: Literal["read-back", "counts", "undone", "lapsed", "refused"]
+    why: str = ""
+    corners: tuple[tuple[float, float], ...] = ()
+
+
+class ToldPane(Message):
+    """What operators told, oldest first."""
+
+    told: tuple[ToldLine, ...] = ()
 
 
 class SeatPane(Message):

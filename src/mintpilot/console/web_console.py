@@ -15,13 +15,15 @@ from mintpilot.console.desk import Asked, Desk
 from mintpilot.console.mission_view import MissionView
 from mintpilot.console.protocol import AttentionPane, Said
 from mintpilot.core.errors import DeviceError, MissingPartError
-from mintpilot.core.events import Event, FrameSeen
+from mintpilot.core.events import Event, FrameSeen, QuestionTimed, ViewTaken
 from mintpilot.core.inputs import OperatorInput, Ordered
 from mintpilot.core.ports import Operator, Recorder, Understand
 from mintpilot.core.query import Order, Question
 
 _BUSY = 200
 """Events that wait to be shown; beyond that pictures are left out."""
+_LATE = 20
+"""The same of pictures that are only watched."""
 _Work: TypeAlias = Callable[[MissionView], None]
 
 
@@ -146,7 +148,11 @@ class WebConsole(Operator, Recorder):
 
     def record(self, event: Event) -> None:
         """Shows one event to whoever watches, a moment later, in another thread."""
-        if isinstance(event, FrameSeen) and self._work.qsize() > _BUSY:
+        turn = self._answering.turn
+        if isinstance(event, QuestionTimed) and turn is not None and turn.question.id == event.question:
+            turn.patience_s = max(0.0, event.deadline_s - (turn.shown_s or event.deadline_s - turn.patience_s))
+        waiting = self._work.qsize()
+        if (isinstance(event, FrameSeen) and waiting > _BUSY) or (isinstance(event, ViewTaken) and waiting > _LATE):
             return
         self._work.put(lambda view: view.record(event))
 

@@ -14,6 +14,7 @@ from mintpilot.core.plan import Plan
 from mintpilot.core.query import Answer, Order, Question
 from mintpilot.core.semantic_map import SemanticMap
 from mintpilot.core.task import Task
+from mintpilot.core.told import ToldFact
 from mintpilot.core.trajectory import FlightLog, Trajectory
 from mintpilot.core.tree import Certificate, GapExplanation, Mint, ScoredQuery
 
@@ -51,6 +52,13 @@ class FrameSeen:
     index: int
     frame: Frame
     detections: tuple[Detection, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class ViewTaken:
+    """A picture for whoever watches: nothing is found in it, nothing is learnt from it, and it is not kept."""
+
+    frame: Frame
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -130,6 +138,26 @@ class OrderTaken:
     """Mission clock."""
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class QuestionTimed:
+    """Until when the open question is waited for: told when it is put, and whenever that changes."""
+
+    question: str
+    """Its id."""
+    deadline_s: float
+    """Mission clock."""
+    extended: bool
+    """Whether more time was granted."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FactsChanged:
+    """An operator told something, confirmed it or took it back; or it lapsed."""
+
+    told: tuple[ToldFact, ...]
+    """All that was told so far, oldest first."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Stepped:
     """One step of the mission: what happened, and a digest of what it made the mission do."""
@@ -170,12 +198,15 @@ class MissionEnded:
 Event: TypeAlias = (
     MissionStarted
     | FrameSeen
+    | ViewTaken
     | MapUpdated
     | Deliberated
     | Asked
     | PlanChosen
     | LegFlown
     | OrderTaken
+    | QuestionTimed
+    | FactsChanged
     | Stepped
     | Noticed
     | Timed

@@ -14,6 +14,7 @@ from mintpilot.core.decisions import Decision
 from mintpilot.core.motion import MotionEnd
 from mintpilot.core.query import Answer, Order
 from mintpilot.core.semantic_map import SemanticMap
+from mintpilot.core.told import Fact
 from mintpilot.core.trajectory import FlightLog, VehicleState
 
 
@@ -129,6 +130,34 @@ class Ordered:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class FactTold:
+    """An operator told something of their own accord. What takes caution away counts once it is confirmed."""
+
+    time_s: float
+    fact: Fact
+    operator: str = ""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FactConfirmed:
+    """An operator confirmed what was read back."""
+
+    time_s: float
+    told: str
+    """Id of the `ToldFact`."""
+    operator: str = ""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FactUndone:
+    """An operator took back what was told, or did not confirm it."""
+
+    time_s: float
+    told: str
+    operator: str = ""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class LinkChanged:
     """A link went down, or came up again."""
 
@@ -163,10 +192,13 @@ Input: TypeAlias = (
     | Answered
     | MoreTimeWanted
     | Ordered
+    | FactTold
+    | FactConfirmed
+    | FactUndone
     | LinkChanged
     | DeliberationEnded
 )
-OperatorInput: TypeAlias = QuestionShown | Answered | MoreTimeWanted | Ordered
+OperatorInput: TypeAlias = QuestionShown | Answered | MoreTimeWanted | Ordered | FactTold | FactConfirmed | FactUndone
 """What operators bring."""
 VehicleInput: TypeAlias = MotionEnded | LinkChanged
 """What vehicles bring."""

@@ -22,6 +22,9 @@ from mintpilot.mapping.rays import cast_rays
 from mintpilot.mapping.settings import MappingSettings
 from mintpilot.mapping.smoke import Clouds, SmokeEvidence, cells_in
 
+EARLIER = 1e-3
+"""By so much an earlier map's voxels are surer than the thresholds, in log odds: any look outweighs it."""
+
 
 class MapBuilder:
     """Gathers what was seen. It changes; the maps that it gives out are values.
@@ -66,6 +69,21 @@ class MapBuilder:
     def last(self) -> SemanticMap | None:
         """The map that was drawn last; None before the first one."""
         return self._last
+
+    def begin_with(self, earlier: SemanticMap) -> None:
+        """Begins with the map of an earlier mission: one look that says otherwise outweighs what it says of a voxel.
+
+        Raises:
+            MapError: it is on another lattice.
+        """
+        if earlier.frame != self._frame:
+            raise MapError(
+                f"the earlier map is on another lattice, {earlier.frame}, than {self._frame}: fly without it"
+            )
+        settings = self._settings
+        self._log_odds[earlier.cells == Cell.FREE] = settings.free_below - EARLIER
+        self._log_odds[earlier.cells == Cell.OCCUPIED] = settings.occupied_above + EARLIER
+        self._last = earlier
 
     def integrate(self, frame: Frame, detections: Iterable[Detection]) -> None:
         """Learns from one picture and from what was found in it.

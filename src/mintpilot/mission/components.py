@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from mintpilot.core.briefing import Briefing
 from mintpilot.core.events import MissionStarted
-from mintpilot.core.ports import Judge, Operator, Recorder, Vehicle
+from mintpilot.core.ports import Camera, Judge, Operator, Recorder, Vehicle
 from mintpilot.mission.deliberation import DeliberationParts
 from mintpilot.mission.map_source import MapSource
 from mintpilot.mission.rewording import Improve
@@ -45,10 +45,14 @@ class MissionComponents:
     """True in a simulator only: baselines may then fly what is not known to be passable."""
     lands: bool = False
     """True for a real vehicle: however the mission ends, it returns if it can, and lands."""
+    begins_with: str = ""
+    """Of a mission that begins with an earlier map: a sentence that says how old it is."""
     watch_map: bool = True
     """False where the map is given and nothing new can be seen."""
     camera_period_s: float = 0.5
     """Between pictures in flight, seconds."""
+    viewed: Camera | None = None
+    """Takes pictures for a person who watches, beside those that the map is made of; None: nobody does."""
     briefing: Briefing | None = None
     """What is shown before take-off and must be answered with yes; None: it takes off at once."""
     digests: bool = False

@@ -28,7 +28,7 @@ def fly_plan(t: Transition, plan: Plan, *, unsafe: bool = False) -> None:
     """Sets out on a plan. What an unsafe baseline takes for granted counts in a simulator only."""
     entered = {gap.partition(":")[2] for gap in plan.enters} if unsafe and t.state.setup.simulated else ()
     wanted = (*(leg.stop for leg in plan.legs), *(one.stop for one in plan.leaves_undone))
-    t.set(plan=plan, leg=0, assume_passable=frozenset(entered), wanted=wanted)
+    t.set(plan=plan, outdated=False, leg=0, assume_passable=frozenset(entered), wanted=wanted)
     if plan.leaves_undone:
         t.tell(f"The battery or the way does not allow everything. {partial_reason((), t.left()[len(plan.legs) :])}")
     next_leg(t)
@@ -37,6 +37,10 @@ def fly_plan(t: Transition, plan: Plan, *, unsafe: bool = False) -> None:
 def next_leg(t: Transition) -> None:
     """Has the trajectory of the next leg made and checked; after the last one the task is done."""
     plan = t.state.plan
+    if t.state.outdated:
+        t.set(plan=None, outdated=False)
+        t.request(Purpose.MISSION)
+        return
     if plan is not None and t.state.leg < len(plan.legs):
         t.request(Purpose.LEG, plan.legs[t.state.leg])
         return

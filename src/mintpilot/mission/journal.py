@@ -10,11 +10,13 @@ from mintpilot.core.events import (
     Asked,
     Deliberated,
     Event,
+    FactsChanged,
     LegFlown,
     MapUpdated,
     Noticed,
     OrderTaken,
     PlanChosen,
+    QuestionTimed,
     Stepped,
     Timed,
 )
@@ -88,6 +90,11 @@ class Journal:
                 )
             case _:
                 pass
+        if after.question is not None and _timing(after.question) != _timing(before.question):
+            name, deadline_s, extended = _timing(after.question)
+            yield QuestionTimed(question=name, deadline_s=deadline_s, extended=extended)
+        if after.told is not before.told:
+            yield FactsChanged(told=tuple(one.known for one in after.told))
         yield from _asked(before, event, after)
         for directive in directives:
             if isinstance(directive, Note):
@@ -173,6 +180,10 @@ def _entry(open_: OpenQuestion, answer: Answer) -> Asked:
         first_text=open_.first_text,
         better_s=open_.reworded_s,
     )
+
+
+def _timing(open_: OpenQuestion | None) -> tuple[str, float, bool]:
+    return ("", 0.0, False) if open_ is None else (open_.question.id, open_.deadline_s, open_.extended)
 
 
 def _broken_off(before: MissionState, event: Input) -> bool:

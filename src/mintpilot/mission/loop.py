@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import deque
 from dataclasses import replace
 
-from mintpilot.core.events import MissionEnded
+from mintpilot.core.events import MissionEnded, Noticed
 from mintpilot.core.inputs import Input, MissionBegun
 from mintpilot.core.mission import Outcome, Verdict
 from mintpilot.mission.components import MissionComponents
@@ -33,6 +33,8 @@ def fly_mission(components: MissionComponents) -> Verdict:
     events: deque[Input] = deque([MissionBegun(time_s=vehicle.time_s, vehicle=vehicle)])
     verdict = Verdict(outcome=Outcome.ABORTED, reason="The mission was broken off; the drone holds where it is.")
     components.recorder.record(components.started())
+    if components.begins_with:
+        components.recorder.record(Noticed(kind="map", text=components.begins_with))
     try:
         while not state.ended:
             if not events:

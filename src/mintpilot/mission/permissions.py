@@ -29,7 +29,7 @@ def permissions(state: BeliefState, settings: AskingSettings) -> Permissions:
     """What the answers so far permit."""
     belief = state.belief
     enter = {obstacle_id(r.id) for r in state.map.regions if r.passable is Knowledge.YES} | set(state.confirmed)
-    leave_out = {presence_id(r.id) for r in state.map.rooms if r.occupied is Knowledge.NO}
+    leave_out = {presence_id(r.id) for r in state.map.rooms if r.searched or r.occupied is Knowledge.NO}
     pick: set[tuple[str, str]] = set()
     for gap in belief.gaps:
         may_be_absent = gap.kind is GapKind.PRESENCE and ABSENT in gap.values

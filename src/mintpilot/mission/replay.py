@@ -104,14 +104,7 @@ class _Replay:
         if self._state is None:
             if not isinstance(event, MissionBegun):
                 raise RecordError(f"event {number}: the steps begin with {type(event).__name__}: the start is missing")
-            setup = Setup(
-                mission=self.started.mission,
-                surveys=self.started.surveys,
-                simulated=self.started.simulated,
-                lands=self.started.lands,
-                briefing=self.started.briefing,
-            )
-            self._state = initial_state(setup, event.vehicle)
+            self._state = initial_state(setup_of(self.started), event.vehicle)
         what = self._thought_again(event) if isinstance(event, DeliberationEnded) else ""
         if not what:
             self._state, directives = step(self._state, event)
@@ -144,6 +137,17 @@ class _Replay:
         if event.decision is None:
             return f"the failure '{event.reason}', and a {type(decision).__name__} now"
         return first_difference(event.decision, decision, tolerance=TOLERANCE, place=type(event.decision).__name__)
+
+
+def setup_of(started: MissionStarted) -> Setup:
+    """What a recorded mission began with."""
+    return Setup(
+        mission=started.mission,
+        surveys=started.surveys,
+        simulated=started.simulated,
+        lands=started.lands,
+        briefing=started.briefing,
+    )
 
 
 def _described(event: Input) -> str:

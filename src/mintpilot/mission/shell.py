@@ -8,7 +8,7 @@ from contextlib import suppress
 from dataclasses import replace
 
 from mintpilot.core.errors import DeviceError
-from mintpilot.core.events import Noticed, Timed
+from mintpilot.core.events import Noticed, Timed, ViewTaken
 from mintpilot.core.inputs import Input, Link, LinkChanged, MapObserved, MotionEnded, QuestionReworded, Ticked
 from mintpilot.core.mission import Outcome, Verdict
 from mintpilot.core.ports import Operator
@@ -22,6 +22,10 @@ from mintpilot.mission.state import MissionState
 
 ATTENDED_S = 0.1
 """While a person is attached, or beside a real vehicle, time passes in pieces of at most this, seconds."""
+HEARING_S = 0.02
+"""While time passes as on the wall, it is listened so often whether somebody has said something, seconds."""
+VIEW_S = 0.2
+"""Between pictures for a person who watches, seconds; fewer where the machine is slow."""
 SOON_S = 1e-6
 """Moments that are nearer than this are the same, seconds: clocks round."""
 SPEAKING_S = 1.2
@@ -51,7 +55,9 @@ class Shell:
         self._operators: list[Operator] = list(components.operators)
         self._monitor: PathMonitor | None = None
         self._moving = self._braking = False
-        self._next_look_s = 0.0
+        self._next_look_s = self._next_view_s = 0.0
+        self._viewing_s = 0.0
+        self._ahead_s = 0.0
         self._rewording: tuple[str, Rewording] | None = None
         self._begun = time.perf_counter()
         self._flying_s = 0.0
@@ -184,8 +190,35 @@ class Shell:
         events.append(Ticked(time_s=self._now_s, vehicle=vehicle))
         self._flying_s += time.perf_counter() - began
         if attended:
-            self._sleep(max(0.0, self._now_s - before_s - (self._clock() - wall_s)))
+            self._ahead_s = max(0.0, self._ahead_s + self._now_s - before_s - (self._clock() - wall_s))
+            self._view()
+            events += self._let_pass()
         return events
+
+    def _let_pass(self) -> list[Input]:
+        """Waits until as much time has passed on the wall, or somebody says something: that is heard at once."""
+        while self._ahead_s > 0:
+            wall_s = self._clock()
+            self._sleep(min(HEARING_S, self._ahead_s))
+            self._ahead_s -= max(self._clock() - wall_s, SOON_S)
+            heard = self._heard()
+            if heard:
+                return heard
+        return []
+
+    def _view(self) -> None:
+        """A picture for whoever watches, where one is due and there is time for it."""
+        camera, wall_s = self._parts.viewed, self._clock()
+        if camera is None or self._now_s < self._next_view_s:
+            return
+        if self._viewing_s > self._ahead_s:
+            self._viewing_s *= 0.9  # it may have been slow for once
+            return
+        self._next_view_s = self._now_s + VIEW_S
+        with suppress(DeviceError):  # a camera that is gone is found out by whoever needs it
+            self._parts.recorder.record(ViewTaken(frame=camera.capture()))
+        self._viewing_s = self._clock() - wall_s
+        self._ahead_s = max(0.0, self._ahead_s - self._viewing_s)
 
     def _attended(self) -> bool:
         """Whether a person is attached: time then passes as fast as on the wall."""

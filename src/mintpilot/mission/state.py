@@ -14,10 +14,15 @@ from mintpilot.core.mission import Achieved, Mission, Outcome, Verdict, Waiting
 from mintpilot.core.plan import LeftUndone, Plan, Prospect, Stop
 from mintpilot.core.query import Answer, Query, Question
 from mintpilot.core.semantic_map import SemanticMap
+from mintpilot.core.told import Standing, ToldFact
 from mintpilot.core.trajectory import VehicleState
 from mintpilot.core.tree import GapExplanation, ScoredQuery
 from mintpilot.mission.belief_state import BeliefState
+from mintpilot.mission.facts import Memory
 from mintpilot.mission.requests import Purpose, SurveyProgress
+
+READ_BACK_S = 30.0
+"""What was read back must be confirmed within this time, seconds."""
 
 
 class Goal(StrEnum):
@@ -154,6 +159,19 @@ class QuestionOver:
     """How long it was open, seconds."""
 
 
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Telling:
+    """A fact that an operator told."""
+
+    known: ToldFact
+    memory: Memory | None = None
+    """What was known of its gap before; None: it is about none, or does not count."""
+    counts_s: float = 0.0
+    """Since when it counts, mission clock."""
+    shown: SemanticMap | None = None
+    """The map that the operator saw, while it is read back."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Ending:
     """How the mission ends once the drone is home or on the ground, or can go no further."""
@@ -195,6 +213,10 @@ class MissionState:
     grounded: bool = False
     """True until the briefing was answered with yes: nothing moves."""
     question: OpenQuestion | None = None
+    told: tuple[Telling, ...] = ()
+    """What operators told of their own accord, oldest first."""
+    outdated: bool = False
+    """Whether something was told since the plan was made: it is thought of again at the next stop."""
     acting: Stop | None = None
     """The stop that is done while a question is open."""
     over: QuestionOver | None = None
@@ -275,6 +297,7 @@ class MissionState:
             times.append(self.question.moves_s)
         if self.beliefs is not None:
             times += [g.given_s + self.setup.mission.asking.answer_valid_s for g in self.beliefs.grants]
+        times += [one.known.told_s + READ_BACK_S for one in self.told if one.known.standing is Standing.READ_BACK]
         if self.request is not None:
             times.append(self.request.deadline_s)
         return min(times, default=float("inf"))

@@ -19,6 +19,9 @@ from mintpilot.core.gap import obstacle_id
 from mintpilot.core.inputs import (
     Answered,
     DeliberationEnded,
+    FactConfirmed,
+    FactTold,
+    FactUndone,
     Input,
     LinkChanged,
     MapObserved,
@@ -34,7 +37,7 @@ from mintpilot.core.mission import Outcome
 from mintpilot.core.motion import MotionEnd
 from mintpilot.core.semantic_map import Knowledge
 from mintpilot.core.trajectory import VehicleState
-from mintpilot.mission import asking, clearing, flying, meanwhile, ordering, surveying
+from mintpilot.mission import asking, clearing, flying, meanwhile, ordering, surveying, telling
 from mintpilot.mission.belief_state import BeliefState
 from mintpilot.mission.directives import Directive
 from mintpilot.mission.path_monitor import with_passable
@@ -94,10 +97,21 @@ def step(state: MissionState, event: Input) -> tuple[MissionState, tuple[Directi
         case Ordered():
             asking.somebody_spoke(t)
             ordering.ordered(t, event)
+        case FactTold():
+            asking.somebody_spoke(t)
+            telling.told(t, event)
+        case FactConfirmed():
+            asking.somebody_spoke(t)
+            telling.confirmed(t, event)
+        case FactUndone():
+            asking.somebody_spoke(t)
+            telling.undone(t, event)
         case LinkChanged():
             ordering.link_changed(t, event)
         case DeliberationEnded():
             _deliberated(t, event)
+    if t.state.told:
+        telling.lapse(t)
     _proceed(t)
     return t.state, tuple(t.out)
 
@@ -152,12 +166,12 @@ def _tick(t: Transition, event: Ticked) -> None:
 
 
 def _observed(t: Transition, event: MapObserved) -> None:
-    beliefs = t.state.beliefs
+    beliefs, map = t.state.beliefs, telling.on_map(event.map, t.state)
     if beliefs is None:
-        known = frozenset(obstacle_id(r.id) for r in event.map.regions if r.passable is Knowledge.YES)
-        t.set(beliefs=BeliefState(map=event.map, belief=prior_belief(())), known_passable=known)
+        known = frozenset(obstacle_id(r.id) for r in map.regions if r.passable is Knowledge.YES)
+        t.set(beliefs=BeliefState(map=map, belief=prior_belief(())), known_passable=known)
     else:
-        t.set(beliefs=replace(beliefs, map=event.map), known_passable=t.state.known_passable | _seen_passable(t, event))
+        t.set(beliefs=replace(beliefs, map=map), known_passable=t.state.known_passable | _seen_passable(t, event))
         asking.check_permissions(t)
     match t.state.activity:
         case Activity.FIRST_LOOK:

@@ -8,6 +8,7 @@ from mintpilot.core.events import (
     Asked,
     Deliberated,
     Event,
+    FactsChanged,
     FrameSeen,
     LegFlown,
     MapUpdated,
@@ -16,8 +17,10 @@ from mintpilot.core.events import (
     Noticed,
     OrderTaken,
     PlanChosen,
+    QuestionTimed,
     Stepped,
     Timed,
+    ViewTaken,
 )
 from mintpilot.core.gap import KnowledgeGap
 from mintpilot.core.query import Evidence
@@ -64,7 +67,7 @@ class History:
                 self.notices.append(event)
             case OrderTaken():
                 self.orders.append(event)
-            case Stepped():
+            case Stepped() | FactsChanged() | QuestionTimed() | ViewTaken():
                 pass
             case Timed():
                 self.timings_s[event.stage] = self.timings_s.get(event.stage, 0.0) + event.seconds

@@ -28,12 +28,15 @@ from mintpilot.core.events import (
     Asked,
     Deliberated,
     Event,
+    FactsChanged,
     FrameSeen,
     LegFlown,
     MapUpdated,
     MissionEnded,
     MissionStarted,
     PlanChosen,
+    QuestionTimed,
+    ViewTaken,
 )
 from mintpilot.core.ports import Recorder
 from mintpilot.core.task import Action
@@ -45,8 +48,9 @@ from mintpilot.recording.mcap_log import MCAP_FILE, McapRecorder
 from mintpilot.recording.record import MissionRecord, NoticeRecord
 
 _DECISIONS = (MissionStarted, Deliberated, Asked, PlanChosen, LegFlown, MissionEnded)
-_DERIVED = (MapUpdated, Deliberated, PlanChosen, LegFlown)
+DERIVED = (MapUpdated, Deliberated, PlanChosen, LegFlown, FactsChanged, QuestionTimed)
 """What follows from the steps, and is large: it is not written a second time."""
+_UNWRITTEN = (*DERIVED, ViewTaken)
 _RUNNING = "The mission was still running when this was written."
 _CUT_SHORT = "The mission was ended before it was finished."
 
@@ -97,7 +101,7 @@ class RunFolder(Recorder):
     def record(self, event: Event) -> None:
         """Writes the event through at once. What cannot be written is noted, and the mission goes on."""
         self._history.add(event)
-        if not isinstance(event, _DERIVED):
+        if not isinstance(event, _UNWRITTEN):
             self._guard("an event", lambda: self._events.append(event))
         self._guard("the flight for viewers", lambda: self._mcap.record(event))
         if isinstance(event, LegFlown):

@@ -4,6 +4,8 @@ import { Card } from "./card.js";
 import { $, make } from "./dom.js";
 import { Link } from "./link.js";
 import { MapView } from "./map.js";
+import { Replay } from "./replay.js";
+import { Tell } from "./tell.js";
 import { showTree } from "./tree.js";
 import { say, speak } from "./words.js";
 
@@ -12,8 +14,10 @@ const STATES = { open: "todo", now: "now", done: "done", "left-out": "left-out" 
 const SIGNS = { open: "○", now: "▶", done: "✓", "left-out": "–" };
 
 const link = new Link();
-const map = new MapView($("map"), (spot) => card.choose(spot));
+const map = new MapView($("map"), (spot) => card.choose(spot), (found) => tell.pick(found));
 const card = new Card(link, map);
+const tell = new Tell(link, map);
+const replay = new Replay(link);
 const last = {}; // the newest of each pane, to say it again in another language
 
 const on = (pane, show) => link.addEventListener(pane, (event) => {
@@ -23,12 +27,15 @@ const on = (pane, show) => link.addEventListener(pane, (event) => {
 
 on("mission", ({ data }) => {
   if (!localStorage.getItem("lang")) use(data.lang);
+  map.setVolume(data.volume);
   showMission(data);
 });
 on("seat", ({ data }) => showSeat(data));
 on("pose", ({ data }) => { map.setPose(data); card.setClock(data.time_s); showBattery(data); });
 on("plan", ({ data }) => map.setPlan(data.points));
-on("map", ({ data, payload }) => { map.setMap(data, payload); });
+on("map", ({ data, payload }) => { map.setMap(data, payload); tell.setMap(data); });
+on("replay", ({ data }) => { card.hold(); replay.set(data); });
+on("told", ({ data }) => tell.set(data.told));
 on("flown", ({ from, items }) => map.addFlown(from, items.map((i) => i.at)));
 on("steps", ({ data }) => showSteps(data));
 on("tree", ({ data }) => showTree(data));
@@ -45,7 +52,8 @@ function showMission(m) {
   $("name").textContent = m.name;
   $("instruction").textContent = m.instruction;
   $("briefing").replaceChildren(
-    ...(m.verdict ? [make("p", { class: `verdict ${m.verdict === "success" ? "good" : "bad"}`, role: "status" }, make("strong", { text: say("ended") }), make("span", { text: m.reason }))] : []),
+    ...(m.verdict ? [make("p", { class: `verdict ${m.verdict === "success" ? "good" : "bad"}`, role: "status" }, make("strong", { text: say("ended") }), make("span", { text: m.reason }),
+      ...(m.waited_s >= 0.5 ? [make("span", { class: "figures", text: say("waited", Math.round(m.waited_s), Math.max(0, Math.round(m.hidden_s))) })] : []))] : []),
     ...(m.briefing.length && !m.verdict ? [make("details", { open: true }, make("summary", { text: say("briefing") }), ...m.briefing.map((line) => make("p", { text: line })))] : []));
 }
 
@@ -59,6 +67,8 @@ function showSeat(s) {
   for (const order of document.querySelectorAll("#orders button")) order.disabled = !s.may_answer;
   for (const field of $("say").elements) field.disabled = !s.seated;
   card.setMay(s.seated);
+  tell.setMay(s.seated);
+  replay.draw();
 }
 
 function showOrders() {
@@ -126,7 +136,7 @@ async function showEvidence(i, data, blob) {
 
 function showLink(state) {
   const box = $("link");
-  if (state === "lost" && last.mission?.data.verdict) state = "up"; // the mission is over, and the program with it
+  if (state === "lost" && (last.mission?.data.verdict || replay.shown)) state = "up"; // the mission is over, and the program with it
   box.className = state;
   document.body.classList.toggle("cut", state !== "up");
   if (state === "up") box.replaceChildren();
@@ -145,6 +155,8 @@ function use(lang) {
   showOrders();
   showLegend();
   card.draw();
+  tell.draw();
+  replay.draw();
   if (last.mission) showMission(last.mission.data);
   if (last.seat) showSeat(last.seat.data);
   if (last.steps) showSteps(last.steps.data);

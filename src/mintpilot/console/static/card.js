@@ -18,6 +18,7 @@ export class Card {
   get open() { return this.#question?.id ? this.#question : null; }
 
   setMay(may) { if (may !== this.#may) { this.#may = may; this.draw(); } }
+  hold() { this.#held = true; } // time passes only as it is told
   setClock(time_s) { this.#clock = { time_s, at: performance.now() }; }
 
   set(question) {
@@ -166,7 +167,7 @@ export class Card {
 
   #confirm(q) {
     return [
-      make("p", { class: "understood" }, make("span", { text: say("understood", this.#readBack()) }), " ", make("strong", { text: say("isRight") })),
+      make("p", { class: "understood" }, make("span", { text: `${say("understood", this.#readBack())}.` }), " ", make("strong", { text: say("isRight") })),
       make("div", { class: "answers two" },
         make("button", { type: "button", class: "answer yes", "data-reply": "yes", disabled: !this.#may, onclick: () => this.#reply("yes") }, make("strong", { text: say("right") }, make("kbd", { text: "Y", "aria-hidden": "true" }))),
         make("button", { type: "button", class: "answer no", "data-reply": "no", disabled: !this.#may, onclick: () => this.#reply("no") }, make("strong", { text: say("wrong") }, make("kbd", { text: "N", "aria-hidden": "true" })))),
@@ -184,7 +185,7 @@ export class Card {
   #count() {
     const q = this.open;
     if (!q || !this.#clock || !$("left")) return;
-    const passed = Math.min(2, (performance.now() - this.#clock.at) / 1000);
+    const passed = this.#held ? 0 : Math.min(2, (performance.now() - this.#clock.at) / 1000);
     const left = Math.max(0, q.deadline_s - this.#clock.time_s - passed);
     this.#longest = q.id === this.#longestOf ? Math.max(this.#longest, left) : left;
     this.#longestOf = q.id;
@@ -194,5 +195,5 @@ export class Card {
     if (left > 0 && left < 10 && this.#warned !== q.id) { this.#warned = q.id; this.#announce(say("left", 10)); }
   }
 
-  #longest = 0; #longestOf = ""; #warned = "";
+  #held = false; #longest = 0; #longestOf = ""; #warned = "";
 }

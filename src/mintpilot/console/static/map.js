@@ -12,19 +12,27 @@ function rgb(colour) {
 
 export class MapView {
   #canvas; #pane = null; #values = null; #ground = null;
+  #volume = null; #told = []; #done = null; #stroke = []; #cursor = null;
   #pose = null; #plan = []; #flown = []; #way = []; #spots = []; #until = 0; #due = false;
 
-  constructor(canvas, onChoose) {
+  constructor(canvas, onChoose, onPick) {
     this.#canvas = canvas;
     new ResizeObserver(() => this.draw()).observe(canvas);
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { this.#paint(); this.draw(); });
     canvas.addEventListener("click", (event) => {
+      if (this.drawing) return;
       const spot = this.#spotAt(event.offsetX, event.offsetY);
-      if (spot) onChoose(spot);
+      spot ? onChoose(spot) : onPick(this.#foundAt(event.offsetX, event.offsetY));
     });
-    canvas.addEventListener("mousemove", (event) => {
-      canvas.style.cursor = this.#spotAt(event.offsetX, event.offsetY) ? "pointer" : "";
+    canvas.addEventListener("pointermove", (event) => this.#moved(event));
+    canvas.addEventListener("pointerdown", (event) => {
+      if (!this.drawing) return;
+      canvas.setPointerCapture(event.pointerId);
+      this.#stroke = [[event.offsetX, event.offsetY]];
+      event.preventDefault();
     });
+    canvas.addEventListener("pointerup", () => { if (this.drawing && this.#stroke.length) this.#finish(); });
+    canvas.addEventListener("keydown", (event) => this.#key(event));
   }
 
   async setMap(pane, png) {
@@ -34,6 +42,7 @@ export class MapView {
     const data = flat.getImageData(0, 0, bitmap.width, bitmap.height);
     this.#values = { width: bitmap.width, height: bitmap.height, at: data.data.filter((_, i) => i % 4 === 0) };
     this.#pane = pane;
+    this.#canvas.dataset.box = JSON.stringify(pane.box);
     this.#canvas.style.aspectRatio = `${Math.min(2.2, Math.max(0.8, bitmap.width / bitmap.height))}`;
     this.#paint();
     this.draw();
@@ -44,6 +53,55 @@ export class MapView {
     const [x, y, z] = pose.position.map((v) => `${v.toFixed(1)} m`);
     this.#canvas.setAttribute("aria-label", say("mapLabel", x, y, z));
     this.draw();
+  }
+
+  setVolume(box) { this.#volume = box; this.draw(); }
+  setTold(outlines) { this.#told = outlines; this.draw(); }
+
+  get drawing() { return this.#done !== null; }
+  startDrawing(done) {
+    if (!this.#pane && !this.#volume) return;
+    this.#done = done;
+    this.#stroke = [];
+    this.#cursor = null;
+    this.#canvas.classList.add("drawing");
+  }
+  stopDrawing() {
+    this.#done = null;
+    this.#stroke = [];
+    this.#cursor = null;
+    this.#canvas.classList.remove("drawing");
+    this.draw();
+  }
+
+  #moved(event) {
+    const at = [event.offsetX, event.offsetY];
+    if (!this.drawing) this.#canvas.style.cursor = this.#spotAt(...at) || this.#foundAt(...at) ? "pointer" : "";
+    else if (event.buttons && this.#stroke.length && Math.hypot(at[0] - this.#stroke.at(-1)[0], at[1] - this.#stroke.at(-1)[1]) > 5) {
+      this.#stroke.push(at);
+      this.draw();
+    }
+  }
+
+  #key(event) { // drawing without a pointer: arrows move, Enter sets a corner, a second Enter at the same place ends
+    if (!this.drawing) return;
+    const step = event.shiftKey ? 40 : 10, by = { ArrowLeft: [-step, 0], ArrowRight: [step, 0], ArrowUp: [0, -step], ArrowDown: [0, step] }[event.key];
+    this.#cursor ??= [this.#canvas.clientWidth / 2, this.#canvas.clientHeight / 2];
+    if (by) this.#cursor = [this.#cursor[0] + by[0], this.#cursor[1] + by[1]];
+    else if (event.key === "Enter" && this.#stroke.at(-1)?.join() === this.#cursor.join()) this.#finish();
+    else if (event.key === "Enter") this.#stroke.push([...this.#cursor]);
+    else if (event.key === "Escape") this.#done(null);
+    else return;
+    event.preventDefault();
+    this.draw();
+  }
+
+  #finish() {
+    const f = this.#frame(), every = Math.ceil(this.#stroke.length / 60);
+    const corners = this.#stroke.filter((_, i) => i % every === 0).map(([x, y]) => [f.left + (x - f.x(f.left)) / f.scale, f.top - (y - f.y(f.top)) / f.scale].map((v) => Math.round(v * 100) / 100));
+    this.#stroke = [];
+    if (corners.length >= 3) this.#done(corners);
+    else this.draw();
   }
 
   setPlan(points) { this.#plan = points; this.draw(); }
@@ -89,7 +147,7 @@ export class MapView {
 
   #frame() {
     const { clientWidth: width, clientHeight: height } = this.#canvas;
-    const [left, bottom, right, top] = this.#pane.box;
+    const [left, bottom, right, top] = this.#pane?.box ?? this.#volume;
     const scale = Math.min(width / (right - left), height / (top - bottom));
     const x0 = (width - scale * (right - left)) / 2, y0 = (height - scale * (top - bottom)) / 2;
     return { scale, x: (x) => x0 + (x - left) * scale, y: (y) => y0 + (top - y) * scale, left, bottom, right, top };
@@ -103,6 +161,37 @@ export class MapView {
     return spots[0] ?? null;
   }
 
+  #foundAt(px, py) { // a thing or room whose mark is there, else the region
+    if (!this.#pane || !this.#values) return null;
+    const f = this.#frame(), { width, height, at } = this.#values;
+    const inside = (t) => px > f.x(t.box[0]) - 9 && px < f.x(t.box[2]) + 9 && py > f.y(t.box[3]) - 9 && py < f.y(t.box[1]) + 9;
+    const thing = this.#pane.things.find(inside);
+    if (thing) return { kind: thing.label === "room" ? "room" : "thing", id: thing.id, words: thing.words };
+    const x = Math.floor(((px - f.x(f.left)) / f.scale / (f.right - f.left)) * width), y = Math.floor(((py - f.y(f.top)) / f.scale / (f.top - f.bottom)) * height);
+    const region = x >= 0 && x < width && y >= 0 && y < height ? this.#pane.regions[at[y * width + x] - 3] : null;
+    return region && !region.id.startsWith("told-") ? { kind: "region", id: region.id, words: region.words } : null;
+  }
+
+  #outline(c, points, colour, closed) {
+    c.beginPath();
+    points.forEach(([x, y], i) => (i ? c.lineTo(x, y) : c.moveTo(x, y)));
+    if (closed) { c.closePath(); c.globalAlpha = 0.28; c.fillStyle = colour; c.fill(); c.globalAlpha = 1; }
+    c.lineJoin = "round";
+    c.strokeStyle = css("--free"); c.lineWidth = 6; c.stroke();
+    c.strokeStyle = colour; c.lineWidth = 3; c.stroke();
+  }
+
+  #drawn(c, f) {
+    for (const corners of this.#told) {
+      const points = corners.map(([x, y]) => [f.x(x), f.y(y)]);
+      this.#outline(c, points, css("--blocked"), true);
+      const middle = [0, 1].map((i) => points.reduce((sum, p) => sum + p[i], 0) / points.length);
+      this.#label(c, "✕", middle[0], middle[1] + 5, true);
+    }
+    if (this.#stroke.length) this.#outline(c, this.#cursor ? [...this.#stroke, this.#cursor] : this.#stroke, css("--mark"), false);
+    if (this.#cursor) this.#label(c, "✛", this.#cursor[0], this.#cursor[1] + 5, true);
+  }
+
   #draw() {
     const canvas = this.#canvas, ratio = devicePixelRatio || 1;
     if (!canvas.clientWidth) return;
@@ -112,6 +201,7 @@ export class MapView {
     c.scale(ratio, ratio);
     if (!this.#pane) {
       this.#label(c, say("noMap"), canvas.clientWidth / 2, canvas.clientHeight / 2);
+      if (this.#volume) this.#drawn(c, this.#frame());
       return;
     }
     const f = this.#frame();
@@ -122,6 +212,7 @@ export class MapView {
     this.#line(c, f, this.#plan, css("--ink"), 2, [7, 5]);
     this.#line(c, f, this.#way, css("--way"), 5, []);
     this.#regions(c, f);
+    this.#drawn(c, f);
     const go = this.#marks(c, f);
     this.#drone(c, f);
     if (go) this.draw();
@@ -155,12 +246,12 @@ export class MapView {
       else c.rect(x - w / 2, y - h / 2, w, h);
       c.fill();
       c.stroke();
-      if (few || room) this.#label(c, room ? `${say("room")}${thing.state === "searched" ? " ✓" : " ?"}` : thing.words, x, y - h / 2 - 5);
+      if (few || room) this.#label(c, room ? `${say("room")}${thing.state === "searched" ? " ✓" : " ?"}` : thing.words, x, y - h / 2 - (room ? 14 : 5));
     }
   }
 
   #regions(c, f) {
-    for (const region of this.#pane.regions) {
+    for (const region of this.#pane.regions.filter((r) => !r.id.startsWith("told-"))) {
       const sign = { open: "?", yes: "✓", no: "✕" }[region.passable];
       this.#label(c, sign, f.x(region.centre[0]), f.y(region.centre[1]) + 5, true);
     }

@@ -1,0 +1,102 @@
+"""The map of an earlier mission, to begin another one with: no permission is taken over (method, section 12)."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from mintpilot.assembly.retelling import retold
+from mintpilot.core.errors import RecordError
+from mintpilot.core.events import Event
+from mintpilot.core.query import Question
+from mintpilot.core.semantic_map import Knowledge, Region, SemanticMap
+from mintpilot.core.told import PREFIX
+from mintpilot.recording.event_log import read_event_log
+
+_DRAWN = "drawn-earlier-"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class EarlierMap:
+    """What an earlier mission knew of the place."""
+
+    map: SemanticMap
+    """Everything uncertain in it is open again."""
+    run: Path
+    age_s: float
+    """Since it was last drawn, seconds."""
+
+    @property
+    def words(self) -> str:
+        """One sentence for whoever watches."""
+        return (
+            f"It begins with the map of {self.run.name}, which is {in_words(self.age_s)} old. What was free then is "
+            "looked at again as it comes into view; what was permitted then is asked about again."
+        )
+
+
+def earlier_map(run: Path, *, now_s: float | None = None) -> EarlierMap:
+    """The last map of a recorded mission.
+
+    Args:
+        run: the run folder.
+        now_s: seconds since 1970; default: the present time.
+
+    Raises:
+        RecordError: it cannot be read, is damaged, is of another version, or holds no map.
+    """
+    log, last = read_event_log(run), [0.0]
+
+    def events() -> Iterator[Event]:
+        for logged in log:
+            last[0] = logged.at_s
+            yield logged.event
+
+    found, at_s = None, 0.0
+    for state in retold(events(), _Nobody()):
+        if state.beliefs is not None and state.beliefs.map is not found:
+            found, at_s = state.beliefs.map, last[0]
+    if found is None:
+        raise RecordError(f"{run}: that mission was over before it had a map: give another run folder")
+    age_s = max(0.0, (time.time() if now_s is None else now_s) - at_s)
+    return EarlierMap(map=without_permissions(found), run=run, age_s=age_s)
+
+
+def without_permissions(map: SemanticMap) -> SemanticMap:
+    """The map with everything open again that somebody has said of its regions and rooms.
+
+    What was drawn to keep out of stays a region: it is entered only after an explicit yes.
+    """
+    rooms = tuple(replace(room, occupied=Knowledge.OPEN, searched=False, best_view=None) for room in map.rooms)
+    objects = tuple(replace(thing, best_view=None) for thing in map.objects)
+    return replace(map, objects=objects, regions=tuple(_open(region) for region in map.regions), rooms=rooms)
+
+
+def in_words(age_s: float) -> str:
+    """An age as people say it: ``18 hours``."""
+    for unit_s, unit in ((86400.0, "day"), (3600.0, "hour"), (60.0, "minute")):
+        if age_s >= unit_s:
+            count = int(age_s // unit_s)
+            return f"{count} {unit}{'s' if count > 1 else ''}"
+    return "less than a minute"
+
+
+def _open(region: Region) -> Region:
+    drawn = region.id.startswith(PREFIX)
+    name = f"{_DRAWN}{region.id.removeprefix(PREFIX)}" if drawn else region.id
+    words = "the region that was drawn earlier" if drawn else region.description
+    return replace(region, id=name, passable=Knowledge.OPEN, description=words, best_view=None)
+
+
+class _Nobody:
+    """Watches nothing."""
+
+    def record(self, event: Event) -> None: ...
+
+    def show(self, question: Question, patience_s: float) -> None: ...
+
+    def withdraw(self, question: str, why: str) -> None: ...
+
+    def tell(self, text: str) -> None: ...

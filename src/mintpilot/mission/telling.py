@@ -1,0 +1,186 @@
+"""What operators tell of their own accord: read back where it takes caution away, undone by one word (section 12)."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Final
+
+from mintpilot.core.inputs import FactConfirmed, FactTold, FactUndone
+from mintpilot.core.semantic_map import SemanticMap
+from mintpilot.core.told import (
+    PREFIX,
+    Fact,
+    KeepOut,
+    RegionBlocked,
+    RegionPassable,
+    RoomSearched,
+    Standing,
+    ThisOne,
+    ToldFact,
+)
+from mintpilot.mission import asking, facts
+from mintpilot.mission.belief_state import BeliefState
+from mintpilot.mission.permissions import enlarges
+from mintpilot.mission.state import READ_BACK_S, Activity, MissionState, Telling
+from mintpilot.mission.transition import Transition
+
+MOST_TOLD: Final = 200
+"""Facts of one mission."""
+_FREEING: Final = (RegionPassable, RoomSearched, ThisOne)
+"""Facts that are read back whatever is permitted already: said again, they count longer, or weigh more."""
+_IN_FLIGHT: Final = (
+    Activity.EXPLORE,
+    Activity.SURVEY_BACK,
+    Activity.LEG,
+    Activity.MEANWHILE,
+    Activity.HOMEWARD,
+    Activity.TO_LANDING,
+)
+"""Flights that are broken off when something new is told: the way may lead elsewhere now."""
+
+
+def told(t: Transition, event: FactTold) -> None:
+    """Takes a fact over at once where it adds caution; else reads it back."""
+    beliefs, mission = t.state.beliefs, t.state.setup.mission
+    if len(t.state.told) >= MOST_TOLD:
+        t.tell("I cannot keep more of what is told in one mission.")
+        return
+    known = ToldFact(
+        id=f"{PREFIX}{t.next_id()}",
+        fact=event.fact,
+        words=facts.words_for(event.fact, beliefs.map if beliefs is not None else None),
+        operator=event.operator,
+        told_s=t.state.clock_s,
+        standing=Standing.COUNTS,
+    )
+    if beliefs is None:
+        why = "" if isinstance(event.fact, KeepOut) else "there is no map yet"
+        _keep(t, _refused(known, why) if why else Telling(known=known))
+        return
+    found = facts.apply(event.fact, beliefs, beliefs.map, mission, t.state.clock_s)
+    if isinstance(found, str):
+        _keep(t, _refused(known, found))
+    elif isinstance(event.fact, _FREEING) or enlarges(beliefs, found.beliefs, mission.asking):
+        _keep(t, Telling(known=replace(known, standing=Standing.READ_BACK), shown=beliefs.map))
+    else:
+        _keep(t, Telling(known=known, memory=found.memory, counts_s=t.state.clock_s))
+        _take_over(t, found.beliefs)
+
+
+def confirmed(t: Transition, event: FactConfirmed) -> None:
+    """What was read back counts now."""
+    telling = _find(t.state, event.told)
+    if telling is None or telling.known.standing is not Standing.READ_BACK or telling.shown is None:
+        return
+    mission = t.state.setup.mission
+    found = facts.apply(telling.known.fact, t.beliefs, telling.shown, mission, t.state.clock_s)
+    if isinstance(found, str):
+        _replace(t, _refused(telling.known, found))
+        return
+    known = replace(telling.known, standing=Standing.COUNTS)
+    _replace(t, Telling(known=known, memory=found.memory, counts_s=t.state.clock_s))
+    _take_over(t, found.beliefs)
+
+
+def undone(t: Transition, event: FactUndone) -> None:
+    """Takes a fact back: what was before it is so again."""
+    telling = _find(t.state, event.told)
+    if telling is None or telling.known.standing not in (Standing.READ_BACK, Standing.COUNTS):
+        return
+    _replace(t, Telling(known=replace(telling.known, standing=Standing.UNDONE)), by=event.operator)
+    if telling.known.standing is Standing.COUNTS and t.state.beliefs is not None:
+        _take_over(t, facts.take_back(telling.known.fact, t.state.beliefs, telling.memory))
+
+
+def on_map(map: SemanticMap, state: MissionState) -> SemanticMap:
+    """A new map with what was told in it, and without what was taken back."""
+    drawn: list[tuple[str, KeepOut]] = []
+    searched, not_searched = set[str](), set[str]()
+    finished = state.beliefs.finished if state.beliefs is not None else frozenset[str]()
+    for telling in state.told:
+        fact, counts = telling.known.fact, telling.known.standing is Standing.COUNTS
+        if isinstance(fact, KeepOut) and counts:
+            drawn.append((telling.known.id, fact))
+        elif isinstance(fact, RoomSearched) and telling.known.standing in (Standing.COUNTS, Standing.UNDONE):
+            (searched if counts else not_searched).add(fact.room)
+    rooms = frozenset(not_searched - searched)
+    map = facts.with_searched(map, frozenset(searched), facts.not_looked_into(rooms, finished))
+    return facts.with_drawn(map, tuple(drawn))
+
+
+def lapse(t: Transition) -> None:
+    """What was not confirmed in time is undone; a yes for a region ages, or somebody has said no since."""
+    grants = {} if t.state.beliefs is None else {grant.gap: grant.given_s for grant in t.state.beliefs.grants}
+    for telling in t.state.told:
+        known = telling.known
+        if known.standing is Standing.READ_BACK and t.state.clock_s >= known.told_s + READ_BACK_S:
+            _replace(t, Telling(known=replace(known, standing=Standing.UNDONE)))
+        elif isinstance(known.fact, RegionPassable) and telling.memory is not None:
+            holds = grants.get(telling.memory.gap) == telling.counts_s
+            standing = Standing.COUNTS if holds else Standing.LAPSED
+            if known.standing in (Standing.COUNTS, Standing.LAPSED) and standing is not known.standing:
+                _replace(t, replace(telling, known=replace(known, standing=standing)))
+
+
+def _take_over(t: Transition, beliefs: BeliefState) -> None:
+    """Goes on with other beliefs: whatever is thought, asked or flown without them ends."""
+    t.set(beliefs=replace(beliefs, map=on_map(beliefs.map, t.state)))
+    asking.check_permissions(t)
+    if t.state.grounded:
+        return
+    t.withdraw("the operator has told something new")
+    # somebody attends to the mission: its patience with news begins anew
+    t.set(request=None, fallback=None, drops=0, replans=0, hops=0, home_s=None, outdated=t.state.plan is not None)
+    if t.state.activity in _IN_FLIGHT:
+        t.brake()
+
+
+def _keep(t: Transition, telling: Telling) -> None:
+    t.set(told=(*t.state.told, telling))
+    _note(t, telling, telling.known.operator)
+
+
+def _replace(t: Transition, telling: Telling, *, by: str = "") -> None:
+    t.set(told=tuple(telling if one.known.id == telling.known.id else one for one in t.state.told))
+    _note(t, telling, by)
+
+
+def _note(t: Transition, telling: Telling, by: str) -> None:
+    known = telling.known
+    what, who = _in_words(known.fact, known.words), f" ({by})" if by else ""
+    match known.standing:
+        case Standing.READ_BACK:
+            t.note("told", f"Read back: {what}{who}.")
+        case Standing.COUNTS:
+            t.note("told", f"Told: {what}{who}.")
+            t.tell(f"I take over: {what}.")
+        case Standing.UNDONE:
+            t.note("told", f"Taken back: {what}{who}.")
+            t.tell(f"I take back: {what}.")
+        case Standing.LAPSED:
+            t.note("told", f"No longer counts: {what}.")
+        case Standing.REFUSED:
+            t.note("told", f"Not taken over: {what}: {known.why}{who}.")
+            t.tell(f"I do not take over that {what}: {known.why}.")
+
+
+def _in_words(fact: Fact, words: str) -> str:
+    match fact:
+        case KeepOut():
+            return "a region was drawn to stay out of"
+        case RegionBlocked():
+            return f"{words} must not be entered"
+        case RegionPassable():
+            return f"{words} may be flown through"
+        case RoomSearched():
+            return f"{words} was searched"
+        case ThisOne():
+            return f"{words} is the one that is meant"
+
+
+def _refused(known: ToldFact, why: str) -> Telling:
+    return Telling(known=replace(known, standing=Standing.REFUSED, why=why))
+
+
+def _find(state: MissionState, name: str) -> Telling | None:
+    return next((one for one in state.told if one.known.id == name), None)
