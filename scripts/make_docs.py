@@ -38,6 +38,7 @@ COMMANDS = (
     "bench gaps",
     "bench language",
     "bench trust",
+    "bench faults",
     "bench report",
     "bench export",
     "understand answer",
