@@ -28,7 +28,7 @@ from mintpilot.conformance.faults.records_kept import kept
 from mintpilot.conformance.faults.trial import Trial, record_of
 from mintpilot.core.errors import RecordError
 
-FULL: Final[Mapping[Adapter, int]] = {Adapter.KINEMATIC: 8500}
+FULL: Final[Mapping[Adapter, int]] = {Adapter.KINEMATIC: 8500, Adapter.LINK: 1300}
 """Trials of a whole campaign."""
 LONGEST_S: Final = {Adapter.KINEMATIC: 240.0, Adapter.LINK: 120.0, Adapter.MUJOCO: 1200.0}
 """A trial that is not over after this time hangs, seconds."""
@@ -141,6 +141,10 @@ def _alone(draw: Draw, *, calm: bool = False) -> FaultRecord:
 
 def fly(draw: Draw, folder: Path, written: Counter) -> FaultRecord:
     """One trial, here and now."""
+    if draw.adapter is Adapter.LINK:
+        from mintpilot.conformance.faults.link_trial import fly_link
+
+        return fly_link(draw)
     return Trial(draw, folder, written).fly()
 
 

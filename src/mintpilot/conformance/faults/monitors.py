@@ -58,7 +58,11 @@ def touches(ledger: Ledger, world: World, *, more_m: float = 0.0) -> str:
 
 
 def moved_safely(ledger: Ledger, world: World) -> Iterator[Breach]:
-    """Nothing is touched; and no place is flown that the map of a moment ago does not call free."""
+    """Nothing is touched; and no place is flown that the map of a moment ago does not call free.
+
+    Once the position is not known the mission cannot say where on the map it is: from then on only touches count here,
+    and landings are judged by where it was told to be (`commanded_safely`).
+    """
     what = touches(ledger, world)
     if what:
         yield Breach(rule="touch", what=f"it touched '{what}'")
@@ -66,8 +70,10 @@ def moved_safely(ledger: Ledger, world: World) -> Iterator[Breach]:
     late_s = rule_of(FaultKind.DEPTH_WRONG).within_s
     if len(trace) < 3 or not ledger.maps:
         return
-    speed = np.r_[0.0, np.linalg.norm(np.diff(trace[:, 1:], axis=0), axis=1)]
+    lost_s = min((at for at, kind, _ in ledger.known if kind is FaultKind.POSITION_LOST), default=np.inf)
+    trace = trace[trace[:, 0] <= lost_s]
     times = np.array([at for at, _ in ledger.maps])
+    speed = np.r_[np.zeros(min(1, len(trace))), np.linalg.norm(np.diff(trace[:, 1:], axis=0), axis=1)]
     which = np.searchsorted(times, trace[:, 0] - late_s, side="right") - 1
     for number in np.unique(which[which >= 0]):
         rows = np.flatnonzero((which == number) & (speed > 1e-4))
