@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TextIO
 
 from mintpilot.cli.exits import ExitCode, hush
 from mintpilot.cli.interrupts import stop_if_wanted
@@ -177,7 +178,7 @@ def _operators(
 
 def _terminal(console: Console, narrator: Narrator, notes: QuestionNotes) -> AnyOperator:
     """The person at this terminal."""
-    if sys.stdin is None:
+    if sys.stdin is None or _is_null(sys.stdin):
         raise InputError("--operator terminal needs a standard input; use --operator scripted where nobody is there")
     from mintpilot.cli.progress import Attended
     from mintpilot.interaction.terminal import TerminalOperator
@@ -191,6 +192,14 @@ def _terminal(console: Console, narrator: Narrator, notes: QuestionNotes) -> Any
         return Attended(person, narrator)
 
     return made
+
+
+def _is_null(stream: TextIO) -> bool:
+    """Whether nothing can ever be read from it, as from /dev/null."""
+    try:
+        return os.path.samestat(os.fstat(stream.fileno()), os.stat(os.devnull))  # noqa: PTH116
+    except (OSError, ValueError):
+        return False
 
 
 def _voice(console: Console, closing: ExitStack) -> AnyOperator:
