@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, TextIO
 from mintpilot.cli.exits import ExitCode, hush
 from mintpilot.cli.interrupts import stop_if_wanted
 from mintpilot.cli.web_page import PageOptions, ServedPage
+from mintpilot.core.compiled import NOT_KEPT, can_keep
 from mintpilot.core.errors import InputError
 
 if TYPE_CHECKING:
@@ -90,6 +91,8 @@ def fly(path: Path, options: FlightOptions) -> ExitCode:
     mission = read_mission(path)
     errors = LenientConsole(stderr=True)
     out = options.out or new_run_path(Path("runs"), mission.name, datetime.now(UTC))
+    if not can_keep():
+        errors.print(NOT_KEPT, highlight=False, soft_wrap=True)
     notes = QuestionNotes(out)
     with ExitStack() as stack, Narrator(errors) as narrator:
         served = ServedPage(options.page, errors, stack) if options.page is not None else None

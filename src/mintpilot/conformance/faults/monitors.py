@@ -76,7 +76,7 @@ def moved_safely(ledger: Ledger, world: World) -> Iterator[Breach]:
     speed = np.r_[np.zeros(min(1, len(trace))), np.linalg.norm(np.diff(trace[:, 1:], axis=0), axis=1)]
     which = np.searchsorted(times, trace[:, 0] - late_s, side="right") - 1
     for number in np.unique(which[which >= 0]):
-        rows = np.flatnonzero((which == number) & (speed > 1e-4))
+        rows = np.flatnonzero((which == number) & (speed > 1e-4) & ~_descending(ledger, trace[:, 0]))
         if not len(rows):
             continue
         map = ledger.maps[number][1]
@@ -144,6 +144,14 @@ def _landing_is_known(order: Commanded, map: SemanticMap, ledger: Ledger, world:
     last = int(ground[0]) if len(ground) else len(column)
     if block[:last].any():
         yield Breach(rule="landed where not known free", what=f"at {order.time_s:.2f} s, at ({x}, {y}) cells")
+
+
+def _descending(ledger: Ledger, times_s: Floats) -> Bools:
+    """At which times (n,) the last motion that was commanded is a descent."""
+    commanded = np.array([order.time_s for order in ledger.commands])
+    lands = np.array([isinstance(order.motion, Land) for order in ledger.commands], bool)
+    last = np.searchsorted(commanded, times_s, side="right") - 1
+    return np.asarray((last >= 0) & lands[last]) if len(lands) else np.zeros(len(times_s), bool)
 
 
 def _been_there(points: Floats, flown: Floats) -> Bools:
