@@ -121,6 +121,7 @@ if ! { install --require-hashes -r "requirements/$LEVEL.txt" && install --no-dep
 fi
 say "compiling the search (kept for later runs)"
 compile() {
+    "$VENV/bin/python" -m compileall -q src
     "$VENV/bin/python" -c "from mintpilot.planning.warm import warm_up; warm_up()" \
         && "$VENV/bin/mintpilot" plan examples/my-building/mission.yaml
 }

@@ -6,13 +6,14 @@ import math
 from collections.abc import Iterator
 
 import numpy as np
-from scipy.ndimage import binary_closing, binary_opening, gaussian_filter, label, sobel
+from scipy.ndimage import gaussian_filter, label, sobel
 
 from mintpilot.core.geometry import Bools, Floats
 from mintpilot.core.observation import Attribute, Detection
 from mintpilot.perception.bodies import Body, BodyKind, Scene
 from mintpilot.perception.boxes import box_around, pixel_box
 from mintpilot.perception.colours import colour_word
+from mintpilot.perception.morphology import closed, opened
 from mintpilot.perception.settings import PerceptionSettings
 from mintpilot.perception.view import View, as_floats, mean_around
 
@@ -31,6 +32,8 @@ DIFFERENT = 0.16
 STRIP_M = 0.25
 AVERAGED = 5
 """Relief is averaged over a square of so many pixels."""
+AROUND = 4
+"""So many pixels around what is close to a wall are looked at with it: masks grow by no more."""
 LEAST_SHARE, MOST_SHARE = 0.004, 0.4
 """A leaf has at least, and at most, these shares of the picture."""
 LINE, LINE_NOISE = 2.5, 4.0
@@ -62,20 +65,24 @@ def _outliers(view: View, scene: Scene, wall: Body, lines: Bools) -> Iterator[tu
     close = view.valid & (np.abs(off) < 0.2 + 2.0 * view.sigma_m)
     if not close.any():
         return
-    rgb = view.frame.rgb.astype(np.float32) / 255
-    usual = np.median(rgb[wall.mask], axis=0)
-    coloured = close & (np.abs(rgb - usual).max(axis=-1) > DIFFERENT)
+    left, top, right, bottom = pixel_box(close)
+    part = slice(max(0, top - AROUND), bottom + AROUND), slice(max(0, left - AROUND), right + AROUND)
+    close, off, valid = close[part], off[part], view.valid[part]
+    usual = np.median(view.frame.rgb[wall.mask], axis=0).astype(np.float32)
+    differ = np.abs(view.frame.rgb[part].astype(np.float32) - usual).max(axis=-1)
+    coloured = close & (differ > 255 * DIFFERENT)
     level = mean_around(off.astype(np.float32), close, AVERAGED)
-    relief = close & (np.abs(level) > RELIEF_M + 2.0 * view.sigma_m / AVERAGED)
-    outlined = close & ~lines
+    relief = close & (np.abs(level) > RELIEF_M + 2.0 * view.sigma_m[part] / AVERAGED)
+    outlined = close & ~lines[part]
     for mask, closing in ((coloured, 2), (relief, 2), (outlined, 0)):
-        filled = binary_closing(mask, iterations=closing) if closing else mask
-        clean = binary_opening(filled, iterations=2)
-        labels, count = label(clean & view.valid)
+        labels, count = label(opened(closed(mask, closing), 2) & valid)
         sizes = np.bincount(labels.ravel(), minlength=count + 1)
-        for number in np.flatnonzero((sizes > LEAST_SHARE * mask.size) & (sizes < MOST_SHARE * mask.size)):
+        few, many = LEAST_SHARE * view.valid.size, MOST_SHARE * view.valid.size
+        for number in np.flatnonzero((sizes > few) & (sizes < many)):
             if number:
-                yield labels == number, mask is outlined
+                patch = np.zeros(view.valid.shape, bool)
+                patch[part] = labels == number
+                yield patch, mask is outlined
 
 
 def _lines(view: View) -> Bools:
@@ -93,6 +100,8 @@ def _as_leaf(
     points = as_floats(scene.surfaces.points_m[patch])
     normal = wall.patch.normal
     along = np.array([-normal[1], normal[0], 0.0]) / max(1e-9, math.hypot(normal[0], normal[1]))
+    if np.ptp(points @ along) < WIDTH_M[0] or points[:, 2].max() - settings.floor_m < HEIGHT_M[0]:
+        return None
     left, right = np.percentile(points @ along, (1.5, 98.5))
     low, high = np.percentile(points[:, 2], (1.5, 98.5)) - settings.floor_m
     pixels = pixel_box(patch)
