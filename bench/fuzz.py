@@ -17,7 +17,16 @@ from pathlib import Path
 import atheris
 from pydantic import ValidationError
 
-with atheris.instrument_imports(include=["mintpilot"]):
+READERS = [
+    "mission_file",
+    "language",
+    "console.protocol",
+    "mapping",
+    "recording.event_log",
+    "recording.codec",
+    "frames",
+]
+with atheris.instrument_imports(include=[f"mintpilot.{room}" for room in READERS]):
     from mintpilot.assembly.talk import Talk
     from mintpilot.conformance.sample import sample_problem
     from mintpilot.console.protocol import COMMANDS, Hello

@@ -159,11 +159,13 @@ class Shell:
         self._worker.close()
 
     def _take(self, heard: list[Input]) -> None:
-        """Puts what was heard behind what waits. In a flood nothing waits behind what operators merely say."""
+        """Puts what was heard behind what waits. In a flood orders come first, then answers: they may add caution."""
         self._waiting += heard
         if len(self._waiting) <= MOST_UNTIMED:
             return
-        self._waiting.sort(key=lambda event: isinstance(event, QuestionShown | Answered | MoreTimeWanted))
+        self._waiting.sort(
+            key=lambda event: 2 * isinstance(event, QuestionShown | MoreTimeWanted) + isinstance(event, Answered)
+        )
         if len(self._waiting) > MOST_WAITING:
             del self._waiting[MOST_WAITING:]
             if not self._flooded:

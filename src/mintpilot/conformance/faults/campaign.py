@@ -213,7 +213,7 @@ def _ended(one: _Flying, *, overdue: bool) -> FaultRecord:
 
 def _died(one: _Flying, text: str, *, overdue: bool, wall_s: float) -> FaultRecord:
     """Of a process that did not come back: where it was killed as drawn, its record must be readable all the same."""
-    breaches = list(kept(one.folder / "run", written=one.written.get(), refused=0, verdict=None))
+    breaches = list(kept(one.folder / "run", written=one.written.get(), refused=one.written.refused, verdict=None))
     if overdue:
         breaches.append(Breach(rule="hang", what=f"not over after {wall_s:.0f} s"))
     elif text and one.draw.first(FaultKind.MEMORY_SHORT) is None:

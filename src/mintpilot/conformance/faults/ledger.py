@@ -45,18 +45,27 @@ class Shown:
 
 
 class Counter:
-    """A number that outlives the process that counts: shared between a process and those that it forks."""
+    """Two numbers that outlive the process that counts: shared between a process and those that it forks."""
 
     def __init__(self) -> None:
-        self._memory = mmap.mmap(-1, 8)
+        self._memory = mmap.mmap(-1, 16)
 
     def set(self, number: int) -> None:
-        """Keeps it."""
+        """Keeps how many events were recorded."""
         self._memory[:8] = number.to_bytes(8, "little")
 
     def get(self) -> int:
-        """The last one."""
+        """How many events were recorded."""
         return int.from_bytes(self._memory[:8], "little")
+
+    def refuse(self) -> None:
+        """The disk has refused one write more."""
+        self._memory[8:] = (self.refused + 1).to_bytes(8, "little")
+
+    @property
+    def refused(self) -> int:
+        """How many writes the disk has refused."""
+        return int.from_bytes(self._memory[8:], "little")
 
 
 @dataclass(slots=True)

@@ -69,8 +69,8 @@ class Disk:
     draw: Draw
     ledger: Ledger
     folder: Path
-    refused: int = 0
-    """Writes to the events that failed."""
+    written: Counter
+    """Counts the writes that failed."""
     _room: int = field(default=-1)
 
     @contextmanager
@@ -82,13 +82,13 @@ class Disk:
             if not stat.S_ISREG(os.fstat(file).st_mode):
                 return true_write(file, data)
             if self._on(FaultKind.DISK_GONE):
-                self.refused += 1
+                self.written.refuse()
                 raise OSError(errno.EIO, os.strerror(errno.EIO))
             if self._on(FaultKind.DISK_FULL):
                 if self._room < 0:
                     self._room = int(self.draw.rng.integers(1, 5000))
                 if self._room == 0:
-                    self.refused += 1
+                    self.written.refuse()
                     raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
                 taken = true_write(file, data[: self._room])
                 self._room -= taken

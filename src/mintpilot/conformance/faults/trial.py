@@ -53,7 +53,7 @@ class Trial:
         """Flies and judges. Never raises for what the mission does: that is its own breach."""
         world, ledger = world_of(self.draw), Ledger()
         run, verdict, raised = self.folder / "run", None, ""
-        disk = surroundings.Disk(self.draw, ledger, run)
+        disk = surroundings.Disk(self.draw, ledger, run, self.written)
         try:
             with self._components(world, ledger, run, disk) as made:
                 surroundings.shorten_memory(self.draw)
@@ -63,7 +63,7 @@ class Trial:
         except Exception as error:
             frame = traceback.extract_tb(error.__traceback__)[-1]
             raised = f"{type(error).__name__}: {error} ({Path(frame.filename).name}:{frame.lineno})"
-        return self._judged(world, ledger, verdict, raised, disk.refused)
+        return self._judged(world, ledger, verdict, raised, self.written.refused)
 
     def _judged(self, world: World, ledger: Ledger, verdict: Verdict | None, raised: str, refused: int) -> FaultRecord:
         run = self.folder / "run"
@@ -73,7 +73,8 @@ class Trial:
         if raised and not ledger.held:
             breaches.append(Breach(rule="left flying", what=f"after {raised}"))
         breaches += kept(run, written=self.written.get(), refused=refused, verdict=verdict)
-        if self.draw.number % REPLAYED == 0 and verdict is not None and not refused:
+        thought = self.draw.first(FaultKind.THINKING_FAILS) is None  # what was lost then is worked out in a replay
+        if self.draw.number % REPLAYED == 0 and verdict is not None and not refused and thought:
             breaches += replays(run)
         return record_of(
             self.draw,
