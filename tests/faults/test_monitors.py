@@ -63,6 +63,15 @@ def test_a_flight_through_smoke_needs_a_yes() -> None:
     assert rules_of(commanded_safely(ledger, world)) == []
 
 
+def test_of_one_moment_only_what_was_said_before_the_command_counts() -> None:
+    world, ledger, asked = sample_world(), ledger_with(SMOKE), question(passable())
+    ledger.shown["q1"] = Shown(time_s=0.2, question=asked, maps=1)
+    ledger.said.append(Said(time_s=1.0, question="q1", answer=answer_for(asked.query, 0)))
+    assert rules_of(commanded_safely(ledger, world)) == []
+    ledger.commands[0] = replace(ledger.commands[0], said=0)
+    assert rules_of(commanded_safely(ledger, world)) == ["flown where not known free"]
+
+
 def test_only_an_explicit_yes_that_still_counts_opens_a_region() -> None:
     world, cells = sample_world(), sample_world().map.regions[0].cells
     asked = question(passable())

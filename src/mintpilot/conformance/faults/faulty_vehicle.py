@@ -69,7 +69,13 @@ class FaultyVehicle(Vehicle):
         """Begins a motion, unless something is broken."""
         state = self.state()
         self._ledger.commands.append(
-            Commanded(time_s=self._ledger.now_s, motion=motion, at_m=state.position_m, maps=len(self._ledger.maps))
+            Commanded(
+                time_s=self._ledger.now_s,
+                motion=motion,
+                at_m=state.position_m,
+                maps=len(self._ledger.maps),
+                said=len(self._ledger.said),
+            )
         )
         if self._dead:
             raise DeviceError(self._dead)

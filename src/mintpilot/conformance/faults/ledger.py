@@ -24,6 +24,8 @@ class Commanded:
     """Where the vehicle was told that it is."""
     maps: int
     """How many maps had been handed over."""
+    said: int | None = None
+    """How many answers had been: of one moment only those that came before count. None: all until then."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

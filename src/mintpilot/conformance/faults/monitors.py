@@ -112,7 +112,7 @@ def _flight_is_known(order: Commanded, map: SemanticMap, ledger: Ledger, world: 
     assert isinstance(order.motion, FollowTrajectory)
     points = geometry.densely(np.asarray(order.motion.trajectory.position_m, float))
     radius = world.mission.limits.radius_m
-    gaps = geometry.gap_to_cells(points, barred_cells(map, order.time_s, ledger, world), map.frame, radius)
+    gaps = geometry.gap_to_cells(points, barred_cells(map, order, ledger, world), map.frame, radius)
     wanted = min(radius, float(gaps[0])) - ROUNDING_M if gaps[0] > 0 else radius - ROUNDING_M
     short = gaps < wanted
     if not short.any():
@@ -132,7 +132,7 @@ def _flight_is_known(order: Commanded, map: SemanticMap, ledger: Ledger, world: 
 def _landing_is_known(order: Commanded, map: SemanticMap, ledger: Ledger, world: World) -> Iterator[Breach]:
     if map.frame.is_flat:
         return
-    barred = barred_cells(map, order.time_s, ledger, world)
+    barred = barred_cells(map, order, ledger, world)
     nz, ny, nx = barred.shape
     x, y, z = ((np.asarray(order.at_m) - np.asarray(map.frame.origin_m)) // map.frame.resolution_m).astype(int)
     if not (0 <= x < nx and 0 <= y < ny):
@@ -162,20 +162,24 @@ def _been_there(points: Floats, flown: Floats) -> Bools:
     return np.asarray(gaps <= TRACK_M)
 
 
-def barred_cells(map: SemanticMap, time_s: float, ledger: Ledger, world: World) -> Bools:
-    """What may not be flown at that time: all that is not free, and every region without a yes that still counts."""
+def barred_cells(map: SemanticMap, order: Commanded, ledger: Ledger, world: World) -> Bools:
+    """What may not be flown by that command: all that is not free, and every region without a yes that still counts."""
     barred = np.array(map.cells != Cell.FREE)
     given = {region.id for region in world.map.regions if region.passable is Knowledge.YES}
     for region in map.regions:
-        if region.id not in given and not allowed(region.id, region.cells, time_s, ledger, world):
+        if region.id not in given and not allowed(
+            region.id, region.cells, order.time_s, ledger, world, heard=order.said
+        ):
             barred.ravel()[region.cells] = True
     return barred
 
 
-def allowed(region: str, cells: np.ndarray, time_s: float, ledger: Ledger, world: World) -> bool:
+def allowed(
+    region: str, cells: np.ndarray, time_s: float, ledger: Ledger, world: World, *, heard: int | None = None
+) -> bool:
     """Whether somebody's explicit yes for a region counts at that time, and covers these cells."""
     gap, covered, since_s = f"obstacle:{region}", None, -np.inf
-    for said in ledger.said:
+    for said in ledger.said[:heard]:
         shown = ledger.shown.get(said.question)
         if said.time_s > time_s or shown is None or gap not in shown.question.query.gap_ids:
             continue
