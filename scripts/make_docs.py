@@ -39,6 +39,7 @@ COMMANDS = (
     "bench language",
     "bench trust",
     "policy learn",
+    "bench faults",
     "bench report",
     "bench export",
     "understand answer",

@@ -47,6 +47,36 @@ def test_a_vehicle_that_cannot_be_is_refused_at_its_line(tmp_path, vehicle):
     assert f"(vehicle.{vehicle.partition(':')[0]})".encode() in done.stdout + done.stderr
 
 
+@pytest.mark.parametrize("character", ["\\e", "\\x07", "\\u202e", "\\u200f", "\\x9b"])
+@pytest.mark.parametrize("key", ["name", "regions[0].description", "instruction"])
+def test_what_steers_a_terminal_is_refused_at_its_line(tmp_path, key, character):
+    text = (EXAMPLE / "mission.yaml").read_text(encoding="utf-8")
+    name = key.rpartition(".")[2]
+    line = next(line for line in text.splitlines() if line.strip().startswith(f"{name}:"))
+    indent = line[: len(line) - len(line.lstrip())]
+    file = changed(tmp_path, line, f'{indent}{name}: "the {character}[2J cloud"')
+    done = program("check", str(file))
+    said = done.stdout + done.stderr
+    assert done.returncode == 2
+    assert f"{key})".encode() in said
+    assert b"is not seen by whoever reads this" in said
+    assert b"\x1b" not in said
+
+
+@pytest.mark.parametrize("operator", ["terminal", "console,terminal"])
+def test_nobody_can_answer_from_dev_null(tmp_path, operator):
+    done = program("run", str(EXAMPLE / "mission.yaml"), "--operator", operator, "--out", str(tmp_path / "run"))
+    assert done.returncode == 2
+    assert b"needs a standard input" in done.stderr
+
+
+@pytest.mark.parametrize("words", [["--out", ""], ["--out="]])
+def test_no_name_is_no_folder(words):
+    done = program("run", str(EXAMPLE / "mission.yaml"), "--operator", "scripted", *words)
+    assert done.returncode == 2
+    assert b"give a file or a folder" in done.stderr
+
+
 def test_a_pipe_is_no_mission(tmp_path):
     os.mkfifo(tmp_path / "mission.yaml")
     done = program("check", str(tmp_path / "mission.yaml"))

@@ -337,6 +337,13 @@ def test_at_a_terminal_a_letter_answers_alone_and_not_while_more_is_typed(termin
     assert terminal.seen.count("4 s  Your answer") >= 1, "the seconds that are left are counted down"
 
 
+def test_at_a_terminal_ctrl_d_is_answered(terminal):
+    terminal.expect("Your answer")
+    terminal.type(b"\x04")
+    terminal.expect("nobody answers here any more")
+    terminal.expect("got timeout")
+
+
 def test_a_letter_that_answers_nothing_waits_for_the_rest_of_its_word(terminal):
     terminal.expect("Your answer")
     terminal.type(b"w")

@@ -356,5 +356,6 @@ def test_what_steers_a_terminal_is_spelt_out(tmp_path):
     path = tmp_path / "mission.yaml"
     path.write_text('mintpilot: 1\nname: "a\\x1b[2J\\nb"\ninstruction: Go.\nworld: {scenario: medicine-boxes}\n')
     (problem,) = find_problems(path)
-    assert "\\x1b[2J\\n" in problem.message
+    assert problem.path == "name"
+    assert "U+001B" in problem.message
     assert problem.message.isprintable()

@@ -5,12 +5,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from tests.vehicle.places import PAD, room
-from tests.vehicle.rig import Rig
 
 from mintpilot.conformance.vehicle_double.body import Body
 from mintpilot.conformance.vehicle_double.faults import Fault
 from mintpilot.conformance.vehicle_double.parameters import Flavour
+from mintpilot.conformance.vehicle_double.rig import Rig
+from mintpilot.conformance.vehicle_double.room import PAD, room
 from mintpilot.core.inputs import Link
 from mintpilot.core.motion import FollowTrajectory, Land, MotionEnd, PerformAction, TakeOff
 from mintpilot.core.plan import Site, Stop

@@ -6,13 +6,13 @@ from dataclasses import replace
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from tests.vehicle.places import room
 
 from mintpilot.conformance.vehicle_double.autopilot import DoubleAutopilot, DoubleMode
 from mintpilot.conformance.vehicle_double.body import Target
 from mintpilot.conformance.vehicle_double.faults import Fault, Wire, parse_fault
 from mintpilot.conformance.vehicle_double.fence import Fence
 from mintpilot.conformance.vehicle_double.parameters import REAL32, Flavour, Parameters
+from mintpilot.conformance.vehicle_double.room import room
 from mintpilot.core.errors import InputError, UnknownNameError
 from mintpilot.vehicle.address import parse_address
 from mintpilot.vehicle.failsafes import apply, may_return, return_height_m, return_settings, settings_for

@@ -6,11 +6,11 @@ import time
 from random import Random
 
 import pytest
-from tests.vehicle.places import PAD, room
 from tests.vehicle.test_through_mavsdk import both, set_out, waited
 
 from mintpilot.conformance.vehicle_double.faults import Fault
 from mintpilot.conformance.vehicle_double.parameters import Flavour
+from mintpilot.conformance.vehicle_double.room import PAD, room
 from mintpilot.core.errors import DeviceError
 from mintpilot.core.motion import Land, TakeOff
 from mintpilot.vehicle.mavlink_vehicle import MavlinkVehicle

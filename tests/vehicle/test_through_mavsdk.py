@@ -12,11 +12,11 @@ from pathlib import Path
 
 import pytest
 from tests.driving import ended, land
-from tests.vehicle.places import PAD, room
 
 from mintpilot.conformance import check_vehicle
 from mintpilot.conformance.vehicle_double.faults import Fault, TimedFault
 from mintpilot.conformance.vehicle_double.parameters import Flavour
+from mintpilot.conformance.vehicle_double.room import PAD, room
 from mintpilot.conformance.vehicle_double.serving import DoubleSetup, VehicleDouble, free_port
 from mintpilot.core.errors import DeviceError
 from mintpilot.core.inputs import Link, LinkChanged

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 from cyclopts import App, Parameter
 
+from mintpilot.cli.bench_faults import faults
 from mintpilot.cli.bench_flags import BenchFlags, Flag, Json, VehicleName
 from mintpilot.cli.bench_perception import perception
 from mintpilot.cli.bench_trust import trust
@@ -25,6 +26,7 @@ bench = App(
     result_action="return_value",
 )
 
+bench.command(faults)
 bench.command(perception)
 bench.command(trust)
 _USUAL = BenchFlags()

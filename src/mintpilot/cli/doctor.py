@@ -17,6 +17,7 @@ from pathlib import Path
 from urllib.parse import urlsplit
 
 from mintpilot.cli.exits import ExitCode
+from mintpilot.core.compiled import NOT_KEPT, can_keep
 from mintpilot.core.errors import MintPilotError
 from mintpilot.language.gguf import NAME, PARTS, PATH_VARIABLE, part_files
 from mintpilot.simulation.engine import GL_PACKAGES
@@ -226,6 +227,8 @@ def _compiled() -> Finding:
     kept = sum(1 for _ in root.rglob("*.nbi"))
     place = os.environ.get("NUMBA_CACHE_DIR", "")
     kept += sum(1 for _ in Path(place).rglob("*.nbi")) if place else 0
+    if not can_keep():
+        return Finding(name="compiled search", ok=False, needed=False, found="nowhere to keep it", advice=NOT_KEPT)
     found = f"{kept} compiled parts are kept" if kept else "empty: the first mission takes some seconds longer"
     return Finding(name="compiled search", ok=True, needed=False, found=found)
 

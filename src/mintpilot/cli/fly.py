@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TextIO
 
 from mintpilot.cli.exits import ExitCode, hush
 from mintpilot.cli.interrupts import stop_if_wanted
 from mintpilot.cli.web_page import PageOptions, ServedPage
+from mintpilot.core.compiled import NOT_KEPT, can_keep
 from mintpilot.core.errors import InputError
 
 if TYPE_CHECKING:
@@ -93,6 +95,8 @@ def fly(path: Path, options: FlightOptions) -> ExitCode:
     mission = read_mission(path)
     errors = LenientConsole(stderr=True)
     out = options.out or new_run_path(Path("runs"), mission.name, datetime.now(UTC))
+    if not can_keep():
+        errors.print(NOT_KEPT, highlight=False, soft_wrap=True)
     notes = QuestionNotes(out)
     with ExitStack() as stack, Narrator(errors) as narrator:
         served = ServedPage(options.page, errors, stack) if options.page is not None else None
@@ -184,7 +188,7 @@ def _operators(
 
 def _terminal(console: Console, narrator: Narrator, notes: QuestionNotes) -> AnyOperator:
     """The person at this terminal."""
-    if sys.stdin is None:
+    if sys.stdin is None or _is_null(sys.stdin):
         raise InputError("--operator terminal needs a standard input; use --operator scripted where nobody is there")
     from mintpilot.cli.progress import Attended
     from mintpilot.interaction.terminal import TerminalOperator
@@ -198,6 +202,14 @@ def _terminal(console: Console, narrator: Narrator, notes: QuestionNotes) -> Any
         return Attended(person, narrator)
 
     return made
+
+
+def _is_null(stream: TextIO) -> bool:
+    """Whether nothing can ever be read from it, as from /dev/null."""
+    try:
+        return os.path.samestat(os.fstat(stream.fileno()), os.stat(os.devnull))  # noqa: PTH116
+    except (OSError, ValueError):
+        return False
 
 
 def _voice(console: Console, closing: ExitStack) -> AnyOperator:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Sequence
 from io import TextIOWrapper
+from itertools import pairwise
 from pathlib import Path
 from typing import Annotated, Literal, TypeAlias
 
@@ -542,6 +543,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, TextIOWrapper):
             stream.reconfigure(errors="replace")  # a narrow encoding must not end a flight
+    if any(word == "--out=" or (word == "--out" and after == "") for word, after in pairwise([*words, "-"])):
+        return fail("--out '': give a file or a folder; the working directory is --out .", as_json="--json" in words)
     try:
         code = app(words, exit_on_error=False, print_error=False)
     except CycloptsError as error:

@@ -12,10 +12,15 @@ from __future__ import annotations
 
 import functools
 import hashlib
+import os
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, Literal, TypeVar, cast
 
+NOT_KEPT = (
+    "Compiled searches cannot be kept on this machine: they are compiled again at every start, which takes a minute. "
+    "Set NUMBA_CACHE_DIR to a folder that may be written."
+)
 F = TypeVar("F", bound=Callable[..., Any])
 
 
@@ -59,10 +64,26 @@ class Compiled:
 
         _teach_numba()
         function: Any = self.__wrapped__  # type: ignore[attr-defined]  # set by `functools.update_wrapper`
-        made: Any = njit(cache=True, **self._options)(function)
+        try:
+            made: Any = njit(cache=True, **self._options)(function)
+        except RuntimeError:  # no folder can be written (`can_keep`): compiled for this process alone
+            return njit(**self._options)(function)
         if hasattr(made, "_cache"):  # there is none where compiling is switched off
             made._cache._cache_file._source_stamp = stamp(Path(function.__code__.co_filename).parent)
         return made
+
+
+def can_keep() -> bool:
+    """Whether there is a folder to keep compiled functions in: numba's own, the package's, or the user's cache."""
+    user = os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache")  # noqa: PTH111  (without a home: as it is)
+    chosen = os.environ.get("NUMBA_CACHE_DIR", "")
+    places = [Path(place) for place in (chosen, str(Path(__file__).parent), user) if os.path.isabs(place)]  # noqa: PTH117
+    return any(os.access(_nearest(place), os.W_OK) for place in places)
+
+
+def _nearest(folder: Path) -> Path:
+    """The folder, or the nearest one above that exists."""
+    return next((place for place in (folder, *folder.parents) if place.exists()), folder)
 
 
 @functools.cache

@@ -39,6 +39,8 @@ class ScreenWords:
     """What was understood; ``{}``: the reply and what it does."""
     nothing_asked: str
     """Answers a line that is no order while nothing is asked."""
+    closed: str
+    """Says what happens once nothing more can be typed."""
     nothing_more: str
     """Answers *show* and *why* where there is nothing to be shown."""
     back: str
@@ -63,6 +65,8 @@ WORDS: Mapping[str, ScreenWords] = MappingProxyType(
             repeat_choice="I do not understand. Please give the number of an option, don't know (?), or an order.",
             given_up="I do not understand: I take it as 'don't know'.",
             read_back="I understood {}: {}. Is that right? Yes or no: ",
+            closed="This terminal is closed: nobody answers here any more. The question waits until its time is "
+            "over; then the drone takes the careful way. Ctrl-C ends the mission.",
             nothing_asked="Nothing is asked now. Orders: hold, continue, return, land, abort.",
             nothing_more="Nothing more is known of it.",
             back="Ask back: where, show (map and picture), why, wait (more time), repeat.",
@@ -84,6 +88,8 @@ WORDS: Mapping[str, ScreenWords] = MappingProxyType(
             repeat_choice="Das habe ich nicht verstanden. Bitte eine der Nummern, weiß nicht (?), oder ein Befehl.",
             given_up="Das habe ich nicht verstanden: es gilt als „weiß nicht“.",
             read_back="Ich habe verstanden: {}, {}. Stimmt das? Ja oder nein: ",
+            closed="Dieses Terminal ist geschlossen: Hier antwortet niemand mehr. Die Frage wartet, bis ihre Zeit "
+            "vorbei ist; dann nimmt die Drohne den vorsichtigen Weg. Strg-C beendet die Mission.",
             nothing_asked="Gerade wird nichts gefragt. Befehle: halt, weiter, zurück, landen, abbrechen.",
             nothing_more="Mehr ist dazu nicht bekannt.",
             back="Rückfragen: wo, zeigen (Karte und Bild), warum, warten (mehr Zeit), wiederholen.",
@@ -104,6 +110,8 @@ WORDS: Mapping[str, ScreenWords] = MappingProxyType(
             repeat_choice="Je n'ai pas compris. Dites le numéro d'un choix, je ne sais pas (?), ou un ordre.",
             given_up="Je n'ai pas compris : cela compte comme « je ne sais pas ».",
             read_back="J'ai compris : {}, {}. C'est juste ? Oui ou non : ",
+            closed="Ce terminal est fermé : personne n'y répond plus. La question attend la fin de son "
+            "délai ; puis le drone prend la voie prudente. Ctrl-C met fin à la mission.",
             nothing_asked="Rien n'est demandé. Ordres : stop, continue, reviens, atterris, annule.",
             nothing_more="On n'en sait pas plus.",
             back="Questions en retour : où, montre (carte et image), pourquoi, attends (plus de temps), répète.",
@@ -123,6 +131,8 @@ WORDS: Mapping[str, ScreenWords] = MappingProxyType(
             repeat_choice="No he entendido. Diga el número de una opción, no sé (?), o una orden.",
             given_up="No he entendido: cuenta como «no sé».",
             read_back="He entendido: {}, {}. ¿Es correcto? Sí o no: ",
+            closed="Este terminal está cerrado: aquí ya nadie responde. La pregunta espera hasta que acabe "
+            "su tiempo; después el dron toma el camino prudente. Ctrl-C termina la misión.",
             nothing_asked="No se pregunta nada ahora. Órdenes: alto, sigue, vuelve, aterriza, cancela.",
             nothing_more="No se sabe nada más.",
             back="Puede preguntar: dónde, muestra (mapa e imagen), por qué, espera (más tiempo), repite.",

@@ -108,6 +108,7 @@ class TerminalOperator(Operator):
         self._words, self._notes = screen_words(lang), notes
         self._drawn: tuple[int, str] | None = None
         self._turn: _Turn | None = None
+        self._said_closed = False
         self._understanding: tuple[str, str, Future[Reading]] | None = None
         self._pool = ThreadPoolExecutor(1, thread_name_prefix="mintpilot understanding")
 
@@ -191,6 +192,10 @@ class TerminalOperator(Operator):
             if heard:
                 break
         events += self._heard(time_s, 0.0)
+        if self._keyboard.ended and self._turn is not None and self._keyboard.is_terminal and not self._said_closed:
+            self._said_closed = True
+            self._end_line()
+            self._console.print(Text(self._words.closed, style="yellow"))
         self._count_down(time_s)
         return tuple(events)
 

@@ -79,6 +79,9 @@ def nothing(t: Transition, left: tuple[LeftUndone, ...]) -> None:
 
 def fly_leg(t: Transition, decision: FlyTrajectory) -> None:
     """Flies a leg, or back out of a place that is not known free."""
+    if t.state.is_down(Link.POSITION):
+        _stay(t)
+        return
     if decision.retreat:
         t.note("retreat", "The drone went back the way it came.")
         t.set(retreats=t.state.retreats + 1)
@@ -180,6 +183,9 @@ def go_back(t: Transition, decision: GoBack) -> None:
     if decision.trajectory is None:
         there(t)
         return
+    if t.state.is_down(Link.POSITION):
+        _stay(t)
+        return
     if outlasted(t, decision.trajectory):
         proceed_back(t)
         return
@@ -212,6 +218,15 @@ def no_way_back(t: Transition, decision: RefuseFlight) -> None:
         proceed_back(t)
         return
     t.end("It holds where it is.")
+
+
+def _stay(t: Transition) -> None:
+    """Without a position nothing is flown, the way back no more than any other: it lands right here, or holds."""
+    if t.state.goal is Goal.LAND:
+        t.end("Its position is not known, nor whether the ground below is free: it holds where it is.")
+        return
+    t.redirect(Goal.LAND)
+    proceed_back(t)
 
 
 def proceed_back(t: Transition) -> None:

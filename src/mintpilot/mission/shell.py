@@ -9,7 +9,18 @@ from dataclasses import replace
 
 from mintpilot.core.errors import DeviceError
 from mintpilot.core.events import Noticed, Timed, ViewTaken
-from mintpilot.core.inputs import Input, Link, LinkChanged, MapObserved, MotionEnded, QuestionReworded, Ticked
+from mintpilot.core.inputs import (
+    Answered,
+    Input,
+    Link,
+    LinkChanged,
+    MapObserved,
+    MoreTimeWanted,
+    MotionEnded,
+    QuestionReworded,
+    QuestionShown,
+    Ticked,
+)
 from mintpilot.core.mission import Outcome, Verdict
 from mintpilot.core.ports import Operator
 from mintpilot.core.query import Question
@@ -28,6 +39,10 @@ VIEW_S = 0.2
 """Between pictures for a person who watches, seconds; fewer where the machine is slow."""
 SOON_S = 1e-6
 """Moments that are nearer than this are the same, seconds: clocks round."""
+MOST_UNTIMED = 50
+"""After so many events time passes before more are taken in: whoever talks without end must not stop the clock."""
+MOST_WAITING = 1000
+"""Of what waits longer, the latest that operators merely said is dropped, and that is noted."""
 SPEAKING_S = 1.2
 """Better words are waited for so long before a question is put where nobody watches a screen, seconds."""
 
@@ -59,14 +74,23 @@ class Shell:
         self._viewing_s = 0.0
         self._ahead_s = 0.0
         self._rewording: tuple[str, Rewording] | None = None
+        self._waiting: list[Input] = []
+        self._untimed = 0
+        self._flooded = False
         self._begun = time.perf_counter()
         self._flying_s = 0.0
         self._now_s = components.vehicle.state().time_s
 
     def observe(self, state: MissionState) -> list[Input]:
         """What has come since the last call; where nothing has, lets time pass until the next thing may happen."""
-        waiting = self._heard()
-        return waiting or self._advance(state)
+        self._take(self._heard())
+        now = self._waiting[: MOST_UNTIMED - self._untimed]
+        if now:
+            self._untimed += len(now)
+            del self._waiting[: len(now)]
+            return now
+        self._untimed = 0
+        return self._advance(state)
 
     def look(self, state: MissionState, directive: Observe) -> list[Input]:
         """Takes a picture, or not, and draws the map."""
@@ -139,6 +163,21 @@ class Shell:
         with suppress(DeviceError):
             self._parts.vehicle.hold()
         self._worker.close()
+
+    def _take(self, heard: list[Input]) -> None:
+        """Puts what was heard behind what waits. In a flood orders come first, then answers: they may add caution."""
+        self._waiting += heard
+        if len(self._waiting) <= MOST_UNTIMED:
+            return
+        self._waiting.sort(
+            key=lambda event: 2 * isinstance(event, QuestionShown | MoreTimeWanted) + isinstance(event, Answered)
+        )
+        if len(self._waiting) > MOST_WAITING:
+            del self._waiting[MOST_WAITING:]
+            if not self._flooded:
+                self._flooded = True
+                text = f"More than {MOST_WAITING} inputs of operators came at once: some are not looked at."
+                self._parts.recorder.record(Noticed(kind="operator", text=text))
 
     def _heard(self) -> list[Input]:
         """What operators and worker bring without time passing."""

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import re
 import stat
+import unicodedata
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -141,6 +142,9 @@ class _Builder:
             return self._sequence(path)
         assert isinstance(event, yaml.ScalarEvent)
         _refuse_halves(event.value, line)
+        unseen = _unseen(event.value)
+        if unseen:
+            self._faults.append(Fault(path=path, line=line, message=unseen))
         return scalar(event.value) if event.implicit[0] else event.value
 
     def _mapping(self, path: Path_) -> dict[str, Value]:
@@ -150,6 +154,8 @@ class _Builder:
                 raise _RefusedError(_line(event), "a key must be a word; quote it if it holds brackets or braces")
             key, line = event.value, _line(event)
             _refuse_halves(key, line)
+            if unseen := _unseen(key):
+                raise _RefusedError(line, unseen)
             here = (*path, key)
             if key in mapping:
                 message = f"'{key}' is given again (first on line {self._lines[here]}); keep one of them"
@@ -179,6 +185,18 @@ def _refuse_halves(text: str, line: int) -> None:
         )
 
 
+def _unseen(text: str) -> str:
+    """What is wrong with a text that holds what steers a terminal or turns the reading order; empty: nothing."""
+    for character in text:
+        kind = unicodedata.category(character)
+        if (kind == "Cc" and character not in "\n\t") or (kind == "Cf" and character not in _JOINERS):
+            name = unicodedata.name(character, "a control character")
+            return f"U+{ord(character):04X} ({name}) is not seen by whoever reads this; remove it"
+    return ""
+
+
+_JOINERS = "\u200c\u200d\u00ad"
+"""Some scripts need them; they steer nothing."""
 _INT = re.compile(r"[-+]?[0-9]{1,18}")
 _FLOAT = re.compile(r"[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]{1,4})?")
 _WORDS: dict[str, bool | float | None] = {

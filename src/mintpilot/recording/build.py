@@ -7,6 +7,7 @@ import math
 import platform
 from collections.abc import Iterable, Sequence
 from enum import Enum
+from functools import cache
 from importlib import metadata
 from itertools import pairwise
 
@@ -94,6 +95,7 @@ def build_record(history: History, *, run_dir: str = "", unfinished: str = "") -
     )
 
 
+@cache
 def versions() -> dict[str, str]:
     """Versions of Python, MintPilot and the installed parts that decide results."""
     found = {"python": platform.python_version()}

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from typing import Any, TypeVar
 
 from mintpilot.conformance.vehicle_double.autopilot import DoubleAutopilot, DoubleMode
 from mintpilot.conformance.vehicle_double.body import Target
@@ -14,8 +16,9 @@ from mintpilot.vehicle.control import link_step
 from mintpilot.vehicle.control_state import ControlState
 from mintpilot.vehicle.course import SetPoint
 from mintpilot.vehicle.envelope import SafetyEnvelope
-from mintpilot.vehicle.signals import Act, Action, Changed, Did, Ended, Fed, Mode, Seen, Tick, Told
+from mintpilot.vehicle.signals import Act, Action, Changed, Command, Did, Ended, Fed, LinkEvent, Mode, Seen, Tick, Told
 
+_Kind = TypeVar("_Kind")
 TICK_S = 0.05
 BEAT_S = 0.5
 MODES = {
@@ -68,15 +71,15 @@ class Rig:
         pad = self.envelope.hover_m
         return (pad[0] + e, pad[1] + n, self.envelope.ground_m - d)
 
-    def of(self, kind: type) -> list:
+    def of(self, kind: type[_Kind]) -> list[_Kind]:
         """What the machine gave out of that kind."""
         return [order for _, order in self.given if isinstance(order, kind)]
 
-    def tell(self, command) -> None:
+    def tell(self, command: Command) -> None:
         """The loop gives a command."""
         self._step(Told(time_s=self.now_s, command=command))
 
-    def run(self, seconds: float, until=lambda rig: False) -> None:
+    def run(self, seconds: float, until: Callable[[Rig], bool] = lambda _: False) -> None:
         """Time passes."""
         for _ in range(round(seconds / TICK_S)):
             self._turn()
@@ -114,7 +117,11 @@ class Rig:
         n, e, d = a.reported_ned()
         vn, ve, vd = a.body.velocity
         pad = self.envelope.hover_m
-        changes = {"message_s": self.now_s, "on_ground": not a.airborne, "position_known": a.knows_position}
+        changes: dict[str, Any] = {
+            "message_s": self.now_s,
+            "on_ground": not a.airborne,
+            "position_known": a.knows_position,
+        }
         if a.knows_position:
             place = (pad[0] + e, pad[1] + n, self.envelope.ground_m - d)
             changes |= {"position_s": self.now_s, "position_m": place, "velocity_mps": (ve, vn, -vd)}
@@ -122,7 +129,7 @@ class Rig:
             changes |= {"heartbeat_s": self.now_s, "armed": a.armed, "mode": MODES[a.mode], "mode_name": a.mode.value}
         self.seen = replace(self.seen, heartbeat_every_s=BEAT_S, **changes)
 
-    def _step(self, event) -> None:
+    def _step(self, event: LinkEvent) -> None:
         self.state, orders = link_step(self.state, event)
         for order in orders:
             self.given.append((self.now_s, order))
