@@ -6,7 +6,7 @@ import shutil
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.oracles import ltlf
 
@@ -37,6 +37,7 @@ def _moments(names):
     return [frozenset(x) for n in range(len(names) + 1) for x in itertools.combinations(names, n)]
 
 
+@settings(deadline=None)
 @given(seeds)
 def test_every_short_trace_is_judged_by_the_definition(seed):
     formula = _formula(seed)
@@ -47,6 +48,7 @@ def test_every_short_trace_is_judged_by_the_definition(seed):
             assert _accepts(automaton, trace) == ltlf.holds(formula, trace), (formula, trace)
 
 
+@settings(deadline=None)
 @given(seeds, st.lists(st.sets(st.sampled_from(NAMES)).map(frozenset), min_size=1, max_size=9))
 def test_the_monitor_tells_what_the_definition_says_at_every_moment(seed, trace):
     formula = _formula(seed, depth=4)
@@ -54,6 +56,7 @@ def test_the_monitor_tells_what_the_definition_says_at_every_moment(seed, trace)
     assert found.tolist() == [ltlf.holds(formula, trace, i) for i in range(len(trace))]
 
 
+@settings(deadline=None)
 @given(seeds)
 def test_no_two_states_are_alike_and_all_are_reached(seed):
     automaton = compile_formula(parse(ltlf.text(_formula(seed))))
@@ -71,6 +74,7 @@ def test_no_two_states_are_alike_and_all_are_reached(seed):
     assert (apart | np.eye(automaton.size, dtype=bool)).all()
 
 
+@settings(deadline=None)
 @given(seeds, st.lists(st.sets(st.sampled_from(NAMES)).map(frozenset), min_size=1, max_size=6), seeds)
 def test_standing_still_changes_nothing(seed, trace, stay):
     formula = _formula(seed)
@@ -79,6 +83,7 @@ def test_standing_still_changes_nothing(seed, trace, stay):
     assert _accepts(automaton, trace) == _accepts(automaton, [*trace[: i + 1], *trace[i:]])
 
 
+@settings(deadline=None)
 @given(seeds, seeds, st.lists(st.sets(st.sampled_from(NAMES)).map(frozenset), min_size=1, max_size=5))
 def test_rules_together_are_all_of_them(one, other, trace):
     formulas = _formula(one), _formula(other)
@@ -86,18 +91,21 @@ def test_rules_together_are_all_of_them(one, other, trace):
     assert _accepts(both, trace) == all(ltlf.holds(f, trace) for f in formulas)
 
 
+@settings(deadline=None)
 @given(seeds, st.lists(st.sets(st.sampled_from(NAMES)).map(frozenset), min_size=1, max_size=5))
 def test_a_formula_or_its_negation_holds(seed, trace):
     formula = parse(ltlf.text(_formula(seed)))
     assert _accepts(compile_formula(formula), trace) != _accepts(compile_formula(negated(formula)), trace)
 
 
+@settings(deadline=None)
 @given(seeds)
 def test_a_formula_written_and_read_again_is_the_same(seed):
     formula = parse(ltlf.text(_formula(seed, depth=4)))
     assert parse(str(formula)) == formula
 
 
+@settings(deadline=None)
 @given(seeds, st.sets(st.sampled_from(NAMES)), st.sets(st.sampled_from(NAMES)), st.integers(0, 3))
 def test_what_is_not_known_may_change_at_any_moment(seed, sure, doubtful, length):
     automaton = compile_formula(parse(ltlf.text(_formula(seed))))
@@ -163,4 +171,6 @@ def test_mona_makes_the_same_automata_of_200_random_formulas():
                 if pair not in seen:
                     seen.add(pair)
                     coming.append(pair)
-        assert automaton.size == len({a for a, _, _ in edges}), formula
+        # MONA's may need one state more: it fixes whether the empty trace counts, which no mission is.
+        alike = bool(automaton.accepting[0]) == (1 in accepting)
+        assert len({a for a, _, _ in edges}) - automaton.size in ((0,) if alike else (0, 1)), formula

@@ -4,7 +4,7 @@ import itertools
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.oracles import ltlf
 
@@ -82,6 +82,7 @@ def test_a_mistake_is_told_with_its_place_and_what_was_meant(text, error, said):
         parse(text)
 
 
+@settings(deadline=None)
 @given(st.text(alphabet="at(b)GFUR!&|-> X,1", max_size=40))
 def test_any_text_is_read_or_refused(text):
     try:
@@ -97,6 +98,7 @@ def _rules(seed, count):
     return [Rule(text=f"{i}", formula=ltlf.text(ltlf.drawn(rng, "ab", 2))) for i in range(count)]
 
 
+@settings(deadline=None)
 @given(st.integers(0, 10**6), st.integers(1, 5))
 def test_conflicting_rules_cannot_be_kept_and_none_of_them_can_be_left_out(seed, count):
     rules = _rules(seed, count)
