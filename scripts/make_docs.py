@@ -90,6 +90,7 @@ TITLES = {
     "GeoreferenceSpec": "georeference",
     "SceneSpec": "scene",
     "KeepAwaySpec": "distance to be kept",
+    "RuleSpec": "rule in time",
     "SolidSpec": "solid",
     "SmokeSpec": "smoke",
     "PersonSpec": "person",

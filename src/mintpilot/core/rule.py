@@ -97,3 +97,36 @@ class Automaton:
             coming = found - reached
             reached |= found
         return frozenset(reached)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StopLetters:
+    """What a stop does to the truth of propositions, as bits of a letter."""
+
+    at: int = 0
+    """True while the drone is there."""
+    begins: int = 0
+    """True from when it was done."""
+    ends: int = 0
+    """False from when it was done."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Ruling:
+    """The rules of a mission, bound to its map and stops, and how far they have come."""
+
+    rules: tuple[Rule, ...]
+    automaton: Automaton
+    """Of all of them together."""
+    cells: tuple[Ints, ...]
+    """For each proposition of ``automaton`` the flat cells (n,) of what it speaks of; empty for those of stops."""
+    stops: tuple[tuple[str, StopLetters], ...]
+    """Stop id and what it does; stops that no rule speaks of are not listed."""
+    states: frozenset[int] = frozenset({0})
+    """The states of ``automaton`` that the mission may be in by what was flown."""
+    held: int = 0
+    """Bits of the propositions of stops that hold now."""
+
+    def letters(self, stop_id: str) -> StopLetters:
+        """What that stop does."""
+        return dict(self.stops).get(stop_id, StopLetters())

@@ -106,6 +106,7 @@ class _Replay:
                 raise RecordError(f"event {number}: the steps begin with {type(event).__name__}: the start is missing")
             setup = Setup(
                 mission=self.started.mission,
+                task=self.started.task,
                 surveys=self.started.surveys,
                 simulated=self.started.simulated,
                 lands=self.started.lands,
