@@ -120,6 +120,7 @@ if ! "$VENV/bin/python" -m pip install --quiet --quiet --disable-pip-version-che
 fi
 say "compiling the search (kept for later runs)"
 compile() {
+    "$VENV/bin/python" -m compileall -q src
     "$VENV/bin/python" -c "from mintpilot.planning.warm import warm_up; warm_up()" \
         && "$VENV/bin/mintpilot" plan examples/my-building/mission.yaml
 }

@@ -35,8 +35,10 @@ from .conftest import flight, way
 
 KEYS = {
     "outcome",
+    "reason",
     "achieved",
     "left",
+    "people",
     "questions",
     "gaps",
     "waiting",
@@ -59,6 +61,7 @@ def test_the_summary_has_the_promised_form(make_events):
     short = json.loads(summary(record_of(make_events())).model_dump_json())
     assert set(short) == KEYS
     assert short["outcome"] == "success"
+    assert short["reason"] == "Every goal was reached."
     assert short["schema_version"] == 2
     assert short["seed"] == 7
     question = short["questions"][0]

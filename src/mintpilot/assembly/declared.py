@@ -7,13 +7,12 @@ from dataclasses import dataclass
 
 from mintpilot.core.gap import GapKind, KnowledgeGap
 from mintpilot.core.geometry import Vec3
+from mintpilot.core.observation import PERSON
 from mintpilot.core.plan import Stop
 from mintpilot.core.ports import TruthOracle
 from mintpilot.core.semantic_map import SemanticMap
 from mintpilot.core.task import Action, Task
 from mintpilot.uncertainty.findings import Findings, find_gaps
-
-PERSON = "person"
 
 
 class DeclaredTruth(TruthOracle):

@@ -13,6 +13,7 @@ from mintpilot.core.errors import InputError, MissionError
 from mintpilot.core.gap import CorrelationGroup
 from mintpilot.core.geometry import Vec3
 from mintpilot.core.mission import Mission
+from mintpilot.core.observation import PERSON
 from mintpilot.core.plan import VehicleLimits
 from mintpilot.core.semantic_map import SemanticMap
 from mintpilot.core.task import SLOW, KeepAway, Reference, Task
@@ -246,8 +247,6 @@ def _scene_on_map(map_: SemanticMap, name: str, task: Task, truths: Mapping[str,
 
 def _with_people_sought(scene: Scene, task: Task) -> Scene:
     """The scene in which only people whom the task is about must be found: others fail no mission."""
-    from mintpilot.assembly.declared import PERSON
-
     if task.seeks_people:
         return scene
     spoken_of = any(PERSON in (g.reference.label, g.thing.label if g.thing else "") for g in task.subgoals)

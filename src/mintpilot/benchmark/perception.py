@@ -11,11 +11,11 @@ from typing import Final
 from mintpilot.benchmark.intervals import student, wilson
 from mintpilot.benchmark.perception_scenes import SeenRoom, seen_rooms
 from mintpilot.core.geometry import Vec3
-from mintpilot.core.observation import OBJECT
+from mintpilot.core.observation import OBJECT, PERSON
 from mintpilot.core.ports import Perception
 from mintpilot.simulation.furnished.shapes import Shown
 from mintpilot.simulation.furnished.style import Style
-from mintpilot.uncertainty.doubts import PERSON, is_doubtful_person
+from mintpilot.uncertainty.doubts import is_doubtful_person
 
 NEAR_M: Final = 0.3
 """A thing is found by an object whose middle is nearer than this."""

@@ -75,7 +75,7 @@ def perception(
 
 
 def _styles(names: Sequence[str]) -> list[Style]:
-    from mintpilot.simulation.furnished.style import HELD_BACK, STYLES
+    from mintpilot.simulation.furnished.styles import HELD_BACK, STYLES
 
     for name in names:
         if name not in STYLES:

@@ -100,6 +100,8 @@ class Attribute:
 
 OBJECT = "object"
 """Label of what nobody can name."""
+PERSON = "person"
+"""Label of people, in any posture."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.ndimage import binary_closing, binary_dilation, label
+from scipy.ndimage import binary_dilation, label
 
 from mintpilot.core.geometry import Bools, Floats
 from mintpilot.core.observation import Attribute, Detection
 from mintpilot.perception.boxes import box_around, pixel_box
+from mintpilot.perception.morphology import closed, dilated
 from mintpilot.perception.settings import PerceptionSettings
 from mintpilot.perception.view import View, as_floats
 
@@ -38,9 +39,9 @@ def brown_mask(view: View) -> Bools:
 def find_doors(view: View, hazy: Bools, index: int, settings: PerceptionSettings) -> list[Detection]:
     """One detection per brown patch that has the shape of a leaf; a pane or a handle in it does not matter."""
     near = view.valid & (view.depth_m < settings.reach_m)
-    mask = np.asarray(binary_closing(brown_mask(view), iterations=2), bool) & near
+    mask = closed(brown_mask(view), 2) & near
     labels, count = label(mask)
-    haze = binary_dilation(hazy, iterations=4)
+    haze = dilated(hazy, 4)
     sizes = np.bincount(labels.ravel(), minlength=count + 1)
     found = []
     for number in np.flatnonzero(sizes >= LEAST_PIXELS):

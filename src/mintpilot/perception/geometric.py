@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.ndimage import binary_closing, label
+from scipy.ndimage import label
 
 from mintpilot.core.geometry import Bools
 from mintpilot.core.observation import Detection, Frame
 from mintpilot.core.ports import Perception
 from mintpilot.perception.boxes import box_around, pixel_box
 from mintpilot.perception.doors import find_doors
+from mintpilot.perception.morphology import closed
 from mintpilot.perception.settings import PerceptionSettings
 from mintpilot.perception.smoke import find_glow, find_smoke, smoke_mask
 from mintpilot.perception.solids import standing_patches
@@ -56,7 +57,7 @@ class GeometricPerception(Perception):
 def find_fire(view: View, index: int, settings: PerceptionSettings) -> tuple[list[Detection], Bools]:
     """One detection per patch of flames, and all their pixels (h, w)."""
     glowing = (view.value > 215) & (view.saturation > 0.55) & (view.hue > 8) & (view.hue < 62)
-    labels, count = label(binary_closing(glowing, iterations=2))
+    labels, count = label(closed(glowing, 2))
     found, burning = [], np.zeros(view.valid.shape, bool)
     for number in range(1, count + 1):
         patch = (labels == number) & view.valid & (view.depth_m < settings.reach_m)

@@ -6,11 +6,11 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.ndimage import binary_dilation
 from scipy.spatial import ConvexHull, QhullError
 
 from mintpilot.core.geometry import Bools, Floats, Ints
 from mintpilot.perception.holding import height_below, held_together, overlap_m3
+from mintpilot.perception.morphology import dilated
 from mintpilot.perception.patches import Patch
 from mintpilot.perception.surfaces import Surfaces
 
@@ -127,7 +127,7 @@ def _rim(mask: Bools) -> Bools:
         slice(max(0, rows[0] - grow), rows[-1] + grow + 1),
         slice(max(0, columns[0] - grow), columns[-1] + grow + 1),
     )
-    rim[window] = binary_dilation(mask[window], iterations=grow) & ~binary_dilation(mask[window], iterations=TOUCH - 1)
+    rim[window] = dilated(mask[window], grow) & ~dilated(mask[window], TOUCH - 1)
     return rim
 
 

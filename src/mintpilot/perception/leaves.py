@@ -4,24 +4,28 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
-from scipy.ndimage import binary_closing, binary_opening, gaussian_filter, label, sobel
+from scipy.ndimage import gaussian_filter, label, sobel
 
 from mintpilot.core.geometry import Bools, Floats
 from mintpilot.core.observation import Attribute, Detection
 from mintpilot.perception.bodies import Body, BodyKind, Scene
 from mintpilot.perception.boxes import box_around, pixel_box
 from mintpilot.perception.colours import colour_word
+from mintpilot.perception.morphology import closed, opened
 from mintpilot.perception.settings import PerceptionSettings
-from mintpilot.perception.view import View, as_floats, mean_around
+from mintpilot.perception.view import Singles, View, as_floats, mean_around
 
-WIDTH_M, HEIGHT_M = (0.6, 1.35), (1.8, 2.3)
-"""Leaves of doors."""
+WIDTH_M, HEIGHT_M = (0.6, 2.0), (1.8, 2.3)
+"""Doors, those of two leaves included."""
 FOOT_M = 0.15
 """A leaf begins no higher above the floor."""
 FILLS = 0.85
 """A leaf fills this share of its rectangle."""
+PIXELS_A_CELL = 8
+"""A leaf's rectangle is parted into cells of about so many pixels, at most 12 by 24."""
 BESIDE = 0.6
 """So much of what is right beside a leaf must be wall."""
 RELIEF_M = 0.02
@@ -29,8 +33,14 @@ RELIEF_M = 0.02
 DIFFERENT = 0.16
 """A leaf's colour differs from its wall's median by at least this share of the full range in one channel."""
 STRIP_M = 0.25
+ALIKE_M = 0.12
+"""Panels of one cladding end at the same height, within this."""
 AVERAGED = 5
 """Relief is averaged over a square of so many pixels."""
+BAND_M, BANDS = 0.3, 16
+"""Height and number of the bands in which a wall's colour is measured."""
+AROUND = 4
+"""So many pixels around what is close to a wall are looked at with it: masks grow by no more."""
 LEAST_SHARE, MOST_SHARE = 0.004, 0.4
 """A leaf has at least, and at most, these shares of the picture."""
 LINE, LINE_NOISE = 2.5, 4.0
@@ -48,11 +58,46 @@ def find_leaves(view: View, scene: Scene, index: int, settings: PerceptionSettin
     lines = _lines(view) if walls else None
     for wall in walls:
         assert lines is not None
-        for patch, by_outline in _outliers(view, scene, wall, lines):
+        patches = list(_outliers(view, scene, wall, lines))
+        panels = [_extent(scene, wall, patch) for patch, by_outline in patches if by_outline]
+        for patch, by_outline in patches:
             leaf = _as_leaf(view, scene, wall, patch, by_outline, index, settings)
-            if leaf is not None and not any(_same(leaf, other) for other in found):
-                found.append(leaf)
+            if leaf is None or any(_same(leaf, other) for other in found):
+                continue
+            if by_outline and any(_in_a_row(_extent(scene, wall, patch), other) for other in panels):
+                continue
+            found.append(leaf)
     return found
+
+
+@dataclass(frozen=True, slots=True)
+class _Extent:
+    """Where a patch of a wall lies along the wall, and its height, metres."""
+
+    left: float
+    right: float
+    high: float
+
+
+def _extent(scene: Scene, wall: Body, patch: Bools) -> _Extent:
+    points = as_floats(scene.surfaces.points_m[patch])
+    left, right = np.percentile(points @ _along(wall), (1.5, 98.5))
+    return _Extent(float(left), float(right), float(np.percentile(points[:, 2], 98.5)))
+
+
+def _along(wall: Body) -> Floats:
+    """The horizontal direction of a wall."""
+    normal = wall.patch.normal
+    return np.array([-normal[1], normal[0], 0.0]) / max(1e-9, math.hypot(normal[0], normal[1]))
+
+
+def _in_a_row(one: _Extent, other: _Extent) -> bool:
+    """Whether two outlined patches are panels of one cladding: right beside each other, and as high.
+
+    Things in front may hide where the other one begins.
+    """
+    gap = max(other.left - one.right, one.left - other.right)
+    return abs(gap) < STRIP_M and abs(one.high - other.high) < ALIKE_M
 
 
 def _outliers(view: View, scene: Scene, wall: Body, lines: Bools) -> Iterator[tuple[Bools, bool]]:
@@ -62,20 +107,39 @@ def _outliers(view: View, scene: Scene, wall: Body, lines: Bools) -> Iterator[tu
     close = view.valid & (np.abs(off) < 0.2 + 2.0 * view.sigma_m)
     if not close.any():
         return
-    rgb = view.frame.rgb.astype(np.float32) / 255
+    left, top, right, bottom = pixel_box(close)
+    part = slice(max(0, top - AROUND), bottom + AROUND), slice(max(0, left - AROUND), right + AROUND)
+    close, off, valid = close[part], off[part], view.valid[part]
+    rgb = view.frame.rgb.astype(np.float32)
     usual = np.median(rgb[wall.mask], axis=0)
-    coloured = close & (np.abs(rgb - usual).max(axis=-1) > DIFFERENT)
+    coloured = close & (np.abs(rgb[part] - usual).max(axis=-1) > 255 * DIFFERENT)
+    banded = close & (np.abs(rgb[part] - _bands(rgb, points, wall, usual)[part]).max(axis=-1) > 255 * DIFFERENT)
     level = mean_around(off.astype(np.float32), close, AVERAGED)
-    relief = close & (np.abs(level) > RELIEF_M + 2.0 * view.sigma_m / AVERAGED)
-    outlined = close & ~lines
-    for mask, closing in ((coloured, 2), (relief, 2), (outlined, 0)):
-        filled = binary_closing(mask, iterations=closing) if closing else mask
-        clean = binary_opening(filled, iterations=2)
-        labels, count = label(clean & view.valid)
+    relief = close & (np.abs(level) > RELIEF_M + 2.0 * view.sigma_m[part] / AVERAGED)
+    outlined = close & ~lines[part]
+    masks = [(coloured, 2), (relief, 2), (outlined, 0)]
+    if (banded != coloured).sum() > LEAST_SHARE * view.valid.size:
+        masks.append((banded, 2))
+    for mask, closing in masks:
+        labels, count = label(opened(closed(mask, closing), 2) & valid)
         sizes = np.bincount(labels.ravel(), minlength=count + 1)
-        for number in np.flatnonzero((sizes > LEAST_SHARE * mask.size) & (sizes < MOST_SHARE * mask.size)):
+        few, many = LEAST_SHARE * view.valid.size, MOST_SHARE * view.valid.size
+        for number in np.flatnonzero((sizes > few) & (sizes < many)):
             if number:
-                yield labels == number, mask is outlined
+                patch = np.zeros(view.valid.shape, bool)
+                patch[part] = labels == number
+                yield patch, mask is outlined
+
+
+def _bands(rgb: Singles, points: Singles, wall: Body, usual: Singles) -> Singles:
+    """For each pixel (h, w, 3) the wall's usual colour at its height: walls are often painted in bands."""
+    band = np.clip(((points[..., 2] - wall.patch.lo_m[2]) / BAND_M).astype(np.int64), 0, BANDS - 1)
+    colours = np.tile(usual, (BANDS, 1))
+    own, seen = band[wall.mask], rgb[wall.mask]
+    for number in np.unique(own):
+        colours[number] = np.median(seen[own == number], axis=0)
+    of_pixel: Singles = colours[band]
+    return of_pixel
 
 
 def _lines(view: View) -> Bools:
@@ -91,8 +155,9 @@ def _as_leaf(
     view: View, scene: Scene, wall: Body, patch: Bools, by_outline: bool, index: int, settings: PerceptionSettings
 ) -> Detection | None:
     points = as_floats(scene.surfaces.points_m[patch])
-    normal = wall.patch.normal
-    along = np.array([-normal[1], normal[0], 0.0]) / max(1e-9, math.hypot(normal[0], normal[1]))
+    along = _along(wall)
+    if np.ptp(points @ along) < WIDTH_M[0] or points[:, 2].max() - settings.floor_m < HEIGHT_M[0]:
+        return None
     left, right = np.percentile(points @ along, (1.5, 98.5))
     low, high = np.percentile(points[:, 2], (1.5, 98.5)) - settings.floor_m
     pixels = pixel_box(patch)
@@ -119,9 +184,10 @@ def _as_leaf(
 
 def _filled(across: Floats, up: Floats) -> float:
     """Share of a coarse grid over the rectangle of the points that holds any."""
-    x = np.clip(((across - across.min()) / max(np.ptp(across), 1e-6) * 12).astype(int), 0, 11)
-    y = np.clip(((up - up.min()) / max(np.ptp(up), 1e-6) * 24).astype(int), 0, 23)
-    return len(np.unique(y * 12 + x)) / (12 * 24)
+    width = int(np.clip(math.sqrt(len(up) / PIXELS_A_CELL / 2), 4, 12))  # far away there are few pixels
+    x = np.clip(((across - across.min()) / max(np.ptp(across), 1e-6) * width).astype(int), 0, width - 1)
+    y = np.clip(((up - up.min()) / max(np.ptp(up), 1e-6) * 2 * width).astype(int), 0, 2 * width - 1)
+    return len(np.unique(y * width + x)) / (2 * width**2)
 
 
 def _flat(points: Floats) -> float:

@@ -10,6 +10,7 @@ from PIL import Image, ImageDraw, ImageFont
 from scipy import ndimage
 
 from mintpilot.core.observation import Frame, Segment
+from mintpilot.perception.morphology import eroded
 
 WIDTH = 960
 """Smaller pictures are enlarged to about this width, pixels: marks must not cover small things."""
@@ -27,7 +28,7 @@ def marked_png(frame: Frame, segments: Sequence[Segment]) -> bytes:
     picture = np.kron(frame.rgb, np.ones((scale, scale, 1), np.uint8))
     for number, segment in enumerate(segments):
         mask = np.kron(segment.mask, np.ones((scale, scale), bool))
-        picture[mask & ~ndimage.binary_erosion(mask, iterations=2)] = _INKS[number % len(_INKS)]
+        picture[mask & ~eroded(mask, 2)] = _INKS[number % len(_INKS)]
     image = Image.fromarray(picture)
     draw, font = ImageDraw.Draw(image), ImageFont.load_default(size=18)
     for number, segment in enumerate(segments, start=1):

@@ -81,6 +81,7 @@ def _measured(number: int, size: int, own: Floats, facing: Floats, depth: Floats
     sign = 1.0 if normal @ (eye - own.mean(axis=0)) >= 0 else -1.0
     spread = own[:: max(1, len(own) // SAMPLE)]
     level, upright = up > LEVEL_COSINE, np.abs(up) < UPRIGHT_COSINE
+    lo_m, hi_m = np.percentile(spread, (1, 99), axis=0)
     side, side_m = _side(own[upright], facing[upright], len(own))
     return Patch(
         number=number,
@@ -91,8 +92,8 @@ def _measured(number: int, size: int, own: Floats, facing: Floats, depth: Floats
         normal=sign * normal,
         offset_m=sign * offset,
         flatness_m=flat,
-        lo_m=np.percentile(spread, 1, axis=0),
-        hi_m=np.percentile(spread, 99, axis=0),
+        lo_m=lo_m,
+        hi_m=hi_m,
         sigma_m=float(NOISE_SHARE * np.median(depth) ** 2),
         top_m=float(np.median(own[level, 2])) if level.mean() > LEAST_FACE else None,
         side=side,
@@ -107,7 +108,8 @@ def _is_hollow(points: Floats, facing: Floats) -> bool:
     level = points[:, :2] - points[:, :2].mean(axis=0)
     axis = np.linalg.eigh(level.T @ level)[1][:, 1]
     along = level @ axis
-    low, high = along <= np.percentile(along, 20), along >= np.percentile(along, 80)
+    near, far = np.percentile(along, (20, 80))
+    low, high = along <= near, along >= far
     turned = facing[high, :2].mean(axis=0) - facing[low, :2].mean(axis=0)
     return bool(turned @ axis < HOLLOW_TURN)
 

@@ -5,6 +5,7 @@ A body falls into convex parts (head, trunk, limbs), so touching curved parts ar
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Iterator, Sequence
 
 import numpy as np
@@ -12,7 +13,7 @@ from scipy.spatial import ConvexHull, KDTree, QhullError
 
 from mintpilot.core.geometry import Bools, Box, Floats
 from mintpilot.core.observation import Segment
-from mintpilot.perception.solid_shapes import solid_shape
+from mintpilot.perception.solid_shapes import KEPT, solid_shape
 
 LEAST_PIXELS = 200
 SOLID = (0.5, 0.7)
@@ -26,6 +27,8 @@ TOUCH_M = 0.1
 LYING_LENGTH_M, LYING_WIDTH_M, LYING_HEIGHT_M = (1.1, 2.1), (0.22, 1.1), (0.12, 0.6)
 UPRIGHT_M, ACROSS_M = (0.6, 2.1), (0.18, 1.15)
 """Somebody standing, sitting or crouching: height, and extent on the ground."""
+HEIGHT_SOFT_M = 0.08
+"""Heights outside of these ranges count less, and from so much on nothing."""
 HEAD_M, HEAD_WIDTH_M = 0.2, (0.1, 0.34)
 """Height of a head above the shoulders, and its width."""
 SHOULDERS = 1.15
@@ -54,15 +57,22 @@ def with_people(segments: Sequence[Segment], least: float = 0.3) -> list[Segment
     return [s for i, s in enumerate(segments) if i not in taken] + bodies
 
 
+@functools.lru_cache(maxsize=KEPT)
 def person_probability(segment: Segment) -> float:
     """Probability, 0 to 1, that a segment is somebody."""
+    height = segment.box_m.hi_m[2] - segment.stands_on_m
+    if not any(_within(height, *sizes, HEIGHT_SOFT_M) for sizes in (LYING_HEIGHT_M, UPRIGHT_M)):
+        return 0.0
     if int(segment.mask.sum()) < LEAST_PIXELS or _spread(segment.normals) < TURNED:
         return 0.0
     shape = solid_shape(segment)
     faces = max(shape.flat, shape.boxlike)
     curved = float(np.clip((FLATTEST[1] - faces) / (FLATTEST[1] - FLATTEST[0]), 0.0, 1.0))
+    alike = curved and max(_lying(segment), _upright(segment))
+    if not alike:
+        return 0.0
     solid = float(np.clip((solidity(segment.mask) - SOLID[0]) / (SOLID[1] - SOLID[0]), 0.0, 1.0))
-    return min(0.9, curved * solid * max(_lying(segment), _upright(segment)))
+    return min(0.9, curved * solid * alike)
 
 
 def joined(parts: Sequence[Segment]) -> Segment:
@@ -86,15 +96,17 @@ def joined(parts: Sequence[Segment]) -> Segment:
 
 def solidity(mask: Bools) -> float:
     """Share of a patch's convex outline in the picture that it fills."""
-    rows, columns = np.nonzero(mask)
-    if len(rows) < 10:
+    pixels, rows = int(mask.sum()), np.flatnonzero(mask.any(axis=1))
+    if pixels < 10:
         return 0.0
-    corners = np.stack([columns, rows], axis=1)
+    first, last = mask.argmax(axis=1), mask.shape[1] - 1 - mask[:, ::-1].argmax(axis=1)
+    # Of each row of pixels only the outermost can be corners.
+    corners = np.stack([np.concatenate([first[rows], last[rows]]), np.concatenate([rows, rows])], axis=1)
     try:
         area = float(ConvexHull(np.concatenate([corners, corners + 1])).volume)
     except QhullError:
         return 0.0
-    return min(1.0, len(rows) / max(area, 1.0))
+    return min(1.0, pixels / max(area, 1.0))
 
 
 def _clusters(segments: Sequence[Segment]) -> Iterator[list[int]]:
@@ -146,11 +158,13 @@ def _within(value: float, low: float, high: float, soft: float) -> float:
 
 
 def _lying(segment: Segment) -> float:
-    length, width = _axes(segment.points_m[:, :2])
     height = segment.box_m.hi_m[2] - segment.stands_on_m
     low = segment.box_m.lo_m[2] - segment.stands_on_m
+    if low >= 0.15 or not _within(height, *LYING_HEIGHT_M, HEIGHT_SOFT_M):
+        return 0.0
+    length, width = _axes(segment.points_m[:, :2])
     size = _within(length, *LYING_LENGTH_M, 0.25) * _within(width, *LYING_WIDTH_M, 0.1)
-    return 0.75 * size * _within(height, *LYING_HEIGHT_M, 0.08) * float(length > 1.6 * height and low < 0.15)
+    return 0.75 * size * _within(height, *LYING_HEIGHT_M, HEIGHT_SOFT_M) * float(length > 1.6 * height)
 
 
 def _upright(segment: Segment) -> float:

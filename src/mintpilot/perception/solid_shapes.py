@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from dataclasses import dataclass
 
@@ -19,6 +20,8 @@ SQUARE = math.sin(math.radians(14.0))
 LEAST_ROUND = 0.35
 """This share of all of a cylinder's surface that is seen is its sides."""
 _SAMPLE = 700
+KEPT = 64
+"""Segments whose shapes are kept: they are asked for again when parts are joined, and when names are given."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -39,6 +42,7 @@ class SolidShape:
     """How many faces of a box are seen."""
 
 
+@functools.lru_cache(maxsize=KEPT)
 def solid_shape(segment: Segment) -> SolidShape:
     """Measures one segment."""
     known = np.linalg.norm(segment.normals, axis=1) > 0.5

@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
-from scipy.ndimage import binary_dilation, label
+from scipy.ndimage import label
 
 from mintpilot.core.geometry import Bools
+from mintpilot.perception.morphology import dilated
 from mintpilot.perception.settings import PerceptionSettings
 from mintpilot.perception.view import Singles, View
 
@@ -32,13 +33,13 @@ def standing_patches(view: View, ignore: Bools, settings: PerceptionSettings) ->
     patches = low & ~_depth_edges(view)
     labels, count = label(patches)
     sizes = np.bincount(labels.ravel(), minlength=count + 1)
-    near_haze = binary_dilation(ignore, iterations=3)
+    near_haze = dilated(ignore, 3)
     for number in np.flatnonzero(sizes >= settings.least_pixels):
         core = labels == number
         if number == 0 or float(near_haze[core].mean()) > HAZY:
             continue
         # The rim that the edges took away belongs to the nearer thing.
-        yield core | (binary_dilation(core) & low & (labels == 0))
+        yield core | (dilated(core, 1) & low & (labels == 0))
 
 
 def _tilt(view: View) -> float:
@@ -55,7 +56,7 @@ def _in_tall_columns(view: View, height: Singles, settings: PerceptionSettings) 
     tall = np.zeros((ny, nx), bool)
     reaching = view.valid & (height > settings.tall_m)
     tall[y[reaching] - y0, x[reaching] - x0] = True
-    wide = binary_dilation(tall, iterations=1)
+    wide = dilated(tall, 1)
     inside = np.zeros(view.valid.shape, bool)
     inside[view.valid] = wide[y[view.valid] - y0, x[view.valid] - x0]
     return inside

@@ -10,10 +10,13 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mintpilot.core.compiled import compiled
 from mintpilot.core.geometry import Bools
 from mintpilot.perception.view import Singles, View
+
+Bytes = NDArray[np.int8]
 
 SMOOTH = 3
 """Half a window over which depth is smoothed at a width of 640, pixels."""
@@ -62,8 +65,9 @@ def surfaces_of(view: View) -> Surfaces:
     smooth = _smoothed(depth, jump, half)
     pose = view.frame.world_from_camera
     points = _back_projected(smooth, lens.fx, lens.fy, lens.cx, lens.cy)
-    normals = _normals(points, smooth, jump, reach)
-    edges = _edges(points, normals, depth, smooth, jump, reach, math.cos(HOLLOW_RAD))
+    reaches = _reaches(smooth, jump, reach)
+    normals = _normals(points, smooth, reaches)
+    edges = _edges(points, normals, depth, smooth, jump, reaches, math.cos(HOLLOW_RAD))
     rotation = pose[:3, :3].astype(np.float32)
     return Surfaces(
         depth_m=smooth,
@@ -118,28 +122,37 @@ def _back_projected(depth: Singles, fx: float, fy: float, cx: float, cy: float) 
 
 
 @compiled(error_model="numpy")
-def _reached(depth: Singles, jump: Singles, v: int, u: int, dv: int, du: int, reach: int) -> int:
-    """How many steps one can go from a pixel without a jump of depth, up to ``reach``."""
+def _reaches(depth: Singles, jump: Singles, reach: int) -> Bytes:
+    """How many steps one can go from each pixel (h, w, 8) without a jump of depth, up to ``reach``.
+
+    Ways: right, left, down, up, and the diagonals down right, up left, down left, up right.
+    """
     height, width = depth.shape
-    for step in range(1, reach + 1):
-        y, x = v + step * dv, u + step * du
-        if not (0 <= y < height and 0 <= x < width) or depth[y, x] <= 0:
-            return step - 1
-        if abs(depth[y, x] - depth[y - dv, x - du]) > jump[y, x]:
-            return step - 1
-    return reach
+    steps = np.zeros((height, width, 8), np.int8)
+    for way in range(8):
+        dv = (0, 0, 1, -1, 1, -1, 1, -1)[way]
+        du = (1, -1, 0, 0, 1, -1, -1, 1)[way]
+        for i in range(height):
+            v = height - 1 - i if dv > 0 else i
+            for j in range(width):
+                u = width - 1 - j if du > 0 else j
+                y, x = v + dv, u + du
+                if not (0 <= y < height and 0 <= x < width) or depth[y, x] <= 0:
+                    continue
+                if abs(depth[y, x] - depth[v, u]) <= jump[y, x]:
+                    steps[v, u, way] = min(reach, steps[y, x, way] + 1)
+    return steps
 
 
 @compiled(error_model="numpy")
-def _normals(points: Singles, depth: Singles, jump: Singles, reach: int) -> Singles:
+def _normals(points: Singles, depth: Singles, reaches: Bytes) -> Singles:
     height, width = depth.shape
     normals = np.zeros((height, width, 3), np.float32)
     for v in range(height):
         for u in range(width):
             if depth[v, u] <= 0:
                 continue
-            right, left = _reached(depth, jump, v, u, 0, 1, reach), _reached(depth, jump, v, u, 0, -1, reach)
-            down, up = _reached(depth, jump, v, u, 1, 0, reach), _reached(depth, jump, v, u, -1, 0, reach)
+            right, left, down, up = reaches[v, u, 0], reaches[v, u, 1], reaches[v, u, 2], reaches[v, u, 3]
             if right + left < 2 or down + up < 2:
                 continue
             ax = points[v, u + right, 0] - points[v, u - left, 0]
@@ -165,7 +178,7 @@ def _edges(
     raw: Singles,
     depth: Singles,
     jump: Singles,
-    reach: int,
+    reaches: Bytes,
     cosine: float,
 ) -> Bools:
     """Pixels between surfaces that meet in a hollow edge, and those on the far side of a jump of depth."""
@@ -184,8 +197,7 @@ def _edges(
                     inside = 0 <= y < height and 0 <= x < width
                     if inside and raw[y, x] > 0 and raw[v, u] - raw[y, x] > jump[v, u]:
                         edges[v, u] = True
-                ahead = _reached(depth, jump, v, u, dv, du, reach)
-                behind = _reached(depth, jump, v, u, -dv, -du, reach)
+                ahead, behind = reaches[v, u, 2 * way], reaches[v, u, 2 * way + 1]
                 if ahead < 1 or behind < 1 or ahead + behind < 3:
                     continue
                 y, x = v + ahead * dv, u + ahead * du

@@ -10,6 +10,8 @@ from PIL import Image, ImageDraw
 
 from mintpilot.core.observation import Frame
 
+FRAMES = "frames"
+"""Folder of the pictures within a run folder."""
 MAX_IN_FLIGHT = 400
 """Pictures on disk while the mission runs; beyond it every second one goes."""
 MAX_SAMPLES = 8
@@ -43,12 +45,17 @@ class FrameStore:
 
     def file(self, index: int) -> Path:
         """Where that picture is, or would be."""
-        return self._folder / f"{index:05d}.jpg"
+        return self._folder / frame_name(index)
 
     def _drop(self, indices: Iterable[int]) -> None:
         for index in list(indices):
             self.file(index).unlink(missing_ok=True)
             self._kept.discard(index)
+
+
+def frame_name(index: int) -> str:
+    """Name of the file of a picture."""
+    return f"{index:05d}.jpg"
 
 
 def write_jpeg(file: Path, frame: Frame) -> None:

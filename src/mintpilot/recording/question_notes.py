@@ -14,7 +14,7 @@ from mintpilot.core.mission import Mission
 from mintpilot.core.query import Question
 from mintpilot.core.semantic_map import SemanticMap
 from mintpilot.core.tree import GapExplanation
-from mintpilot.recording.frames import FrameStore
+from mintpilot.recording.frames import FRAMES, FrameStore
 
 MOST_PICTURES = 2
 """Pictures written for one question: those in which most of what it is about is seen."""
@@ -74,7 +74,7 @@ class QuestionNotes:
                 view = map.best_view(name)
                 if view is not None:
                     boxes.setdefault(view[0], []).append(view[1:])
-        store, written = FrameStore(self.folder / "frames"), []
+        store, written = FrameStore(self.folder / FRAMES), []
         for index, outlines in sorted(boxes.items(), key=lambda item: -len(item[1]))[:MOST_PICTURES]:
             source = store.file(index)
             if not source.is_file():

@@ -14,7 +14,8 @@ from pydantic import JsonValue
 
 from mintpilot.core.mission import Outcome
 from mintpilot.core.query import Reply
-from mintpilot.recording.frames import FrameStore, crop_jpeg
+from mintpilot.recording.frames import FRAMES, FrameStore, crop_jpeg
+from mintpilot.recording.people import people_lines, people_seen
 from mintpilot.recording.record import GapRecord, MissionRecord, QuestionRecord, SeenRecord
 from mintpilot.recording.tree_drawing import percent
 from mintpilot.recording.tree_svg import tree_svg
@@ -23,6 +24,7 @@ from mintpilot.recording.words import OUTCOME_WORDS
 MAX_PICTURES = 18
 """Close-ups shown; what bears on a gap comes first."""
 _REPLY_WORDS = {Reply.YES: "Yes", Reply.NO: "No", Reply.UNSURE: "Don't know", Reply.TIMEOUT: "No answer"}
+"""Replies as a person would say them."""
 
 
 def reply_words(question: QuestionRecord) -> str:
@@ -39,7 +41,6 @@ def consequence(question: QuestionRecord) -> str:
     return {Reply.YES: question.yes_means, Reply.NO: question.no_means}.get(question.reply, "")
 
 
-"""Replies as a person would say them."""
 _KNOWN_WORDS = {
     ("region", "open"): "not known whether it can be flown through",
     ("region", "yes"): "known to be free",
@@ -86,6 +87,7 @@ def report_html(record: MissionRecord, folder: Path) -> str:
         plot=_data_uri(plot.read_bytes(), "image/svg+xml") if plot.is_file() else "",
         tree=Markup(tree_svg(record.tree)) if record.tree else "",  # made here of escaped text
         pictures=pictures(record, folder),
+        people=people_lines(record),
         slowest_s=max(record.timings_s.values(), default=0.0),
         settings=list(_flat(record.settings)),
     )
@@ -96,12 +98,14 @@ _STOPPED = {Outcome.ABORTED, Outcome.NO_SAFE_PLAN, Outcome.PARTIAL}
 
 
 def pictures(record: MissionRecord, folder: Path) -> list[Picture]:
-    """Close-ups of what was found, at most `MAX_PICTURES`: first what a gap is about, then what is rare."""
+    """Close-ups of what was found, at most `MAX_PICTURES`: people, what a gap is about, what is rare."""
     subjects = {g.subject for g in record.gaps} | {v.value for g in record.gaps for v in g.values}
-    store = FrameStore(folder / "frames")
+    store = FrameStore(folder / FRAMES)
     found: list[Picture] = []
     alike = Counter(seen.state for seen in record.seen)
-    order = sorted(record.seen, key=lambda s: (s.id not in subjects, s.kind == "object", alike[s.state], s.id))
+    people = {seen.id for seen in people_seen(record)}
+    rank = lambda s: (s.id not in people, s.id not in subjects, s.kind == "object", alike[s.state], s.id)  # noqa: E731
+    order = sorted(record.seen, key=rank)
     for seen in order:
         crop = crop_jpeg(store.file(seen.view[0]), seen.view[1:]) if seen.view and len(found) < MAX_PICTURES else None
         if crop is not None:

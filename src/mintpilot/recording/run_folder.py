@@ -39,7 +39,7 @@ from mintpilot.core.ports import Recorder
 from mintpilot.core.task import Action
 from mintpilot.recording.build import build_record, versions
 from mintpilot.recording.event_log import EVENTS_FILE, EventLogWriter
-from mintpilot.recording.frames import FrameStore, write_jpeg
+from mintpilot.recording.frames import FRAMES, FrameStore, write_jpeg
 from mintpilot.recording.history import History
 from mintpilot.recording.mcap_log import MCAP_FILE, McapRecorder
 from mintpilot.recording.record import MissionRecord, NoticeRecord
@@ -82,7 +82,7 @@ class RunFolder(Recorder):
         if path.is_dir() and any(path.iterdir()):
             raise RecordError(f"folder '{path}' is not empty and holds no run: give a new one for the run")
         try:
-            (path / "frames").mkdir(parents=True, exist_ok=True)
+            (path / FRAMES).mkdir(parents=True, exist_ok=True)
             if config is not None:
                 _replace(path / "config.json", json.dumps(config, indent=2, ensure_ascii=False, default=str))
         except OSError as error:
@@ -91,7 +91,7 @@ class RunFolder(Recorder):
                 "give a folder that you may write, on a disk with room"
             ) from error
         self._events = EventLogWriter(path / EVENTS_FILE, program=versions().get("mintpilot", ""), clock=clock)
-        self._frames = FrameStore(path / "frames")
+        self._frames = FrameStore(path / FRAMES)
         self._mcap = McapRecorder(path / MCAP_FILE, clock=clock)
 
     def record(self, event: Event) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from mintpilot.core.query import Reply
+from mintpilot.recording.people import PeopleSummary, people_of
 from mintpilot.recording.record import (
     AchievedRecord,
     Figure,
@@ -45,11 +46,14 @@ class RunSummary(Part):
 
     schema_version: int
     outcome: str
-    """``success``, or the reason of failure by its stable name, e.g. ``collision``."""
+    """``success``, or how it failed by its stable name, e.g. ``collision``."""
+    reason: str
+    """The same in a sentence."""
     questions: tuple[QuestionSummary, ...]
     gaps: tuple[GapSummary, ...]
     achieved: tuple[AchievedRecord, ...]
     left: tuple[LeftRecord, ...]
+    people: PeopleSummary
     waiting: WaitingRecord | None
     flight: FlightRecord
     timings_s: dict[str, float]
@@ -62,6 +66,7 @@ def summary(record: MissionRecord) -> RunSummary:
     return RunSummary(
         schema_version=record.schema_version,
         outcome=record.outcome.value,
+        reason=record.reason,
         questions=tuple(
             QuestionSummary(
                 text=q.text, gap=", ".join(q.gaps), gain_bits=q.gain_bits, reply=q.reply, latency_s=q.latency_s
@@ -71,6 +76,7 @@ def summary(record: MissionRecord) -> RunSummary:
         gaps=tuple(GapSummary(**{name: getattr(g, name) for name in GapSummary.model_fields}) for g in record.gaps),
         achieved=record.achieved,
         left=record.left,
+        people=people_of(record),
         waiting=record.waiting,
         flight=record.flight,
         timings_s=record.timings_s,

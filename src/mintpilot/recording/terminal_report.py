@@ -11,6 +11,7 @@ from rich.text import Text
 
 from mintpilot.core.mission import Outcome
 from mintpilot.core.query import Reply
+from mintpilot.recording.people import people_lines
 from mintpilot.recording.record import GapRecord, MissionRecord, QuestionRecord
 from mintpilot.recording.report import consequence, number, reply_words, weightiest_first
 from mintpilot.recording.tree_drawing import tree_text
@@ -120,6 +121,7 @@ def _flown(record: MissionRecord) -> RenderableType:
     if record.waiting is not None and record.waiting.delay_s:
         waited, hidden = number(record.waiting.delay_s, "s"), number(record.waiting.hidden_s, "s")
         lines.append(_plain(f"waited {waited} for answers, {hidden} of it hidden by flying on meanwhile"))
+    lines.extend(_plain(line) for line in people_lines(record))
     lines.extend(_plain(f"done after {number(one.at_s, 's')}: {one.text}") for one in record.achieved)
     lines.extend(_plain(f"left undone: {one.text} ({one.reason})", "yellow") for one in record.left)
     lines.extend(_plain(f"! {notice.text}", "yellow") for notice in record.notices)

@@ -7,11 +7,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from mintpilot.core.gap import ABSENT, PRESENT, GapKind, KnowledgeGap, presence_id
-from mintpilot.core.observation import OBJECT
+from mintpilot.core.observation import OBJECT, PERSON
 from mintpilot.core.semantic_map import MapObject
 from mintpilot.uncertainty.things import Thing, stands_for
 
-PERSON = "person"
 DOUBTFUL = (0.25, 0.9)
 """Between these probabilities it is asked whether a thing is a person."""
 NOT_SEEN = 0.1

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from mintpilot.core.errors import InputError
 from mintpilot.core.gap import PRESENT, Belief, GapKind, KnowledgeGap
 from mintpilot.core.geometry import Vec3
-from mintpilot.core.observation import RegionKind
+from mintpilot.core.observation import PERSON, RegionKind
 from mintpilot.core.plan import PRICE_S, PlanningProblem, Stop, VehicleLimits
 from mintpilot.core.rule import Ruling
 from mintpilot.core.semantic_map import Knowledge, Region, SemanticMap
@@ -18,7 +18,7 @@ from mintpilot.uncertainty.describing import describe, place
 from mintpilot.uncertainty.gaps import obstacle_gaps, people_gaps, presence_gaps
 from mintpilot.uncertainty.keep_away import PREFIX
 from mintpilot.uncertainty.matching import Standpoint
-from mintpilot.uncertainty.targets import PERSON, bind
+from mintpilot.uncertainty.targets import bind
 from mintpilot.uncertainty.things import Thing, things_of
 
 

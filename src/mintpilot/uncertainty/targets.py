@@ -8,6 +8,7 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field
 
 from mintpilot.core.gap import NOWHERE, Candidate, GapKind, KnowledgeGap, target_id
+from mintpilot.core.observation import PERSON
 from mintpilot.core.plan import Site, Stop
 from mintpilot.core.task import Action, Reference, SubGoal, Task
 from mintpilot.uncertainty.describing import describe_apart, seen
@@ -20,7 +21,6 @@ _REACH_M = {Action.PICK: 1.2, Action.COUNT: 2.5, Action.PHOTOGRAPH: 2.5, Action.
 """From how far a step can be done where that is not `_NEAR_M`, metres."""
 _NEAR_M = 1.5
 _POSITION_REACH_M = 0.75
-PERSON = "person"
 _PRONOUNS = frozenset({"it", "him", "her", "them", "there", "that", "this", "one"})
 
 

@@ -6,21 +6,32 @@ import math
 import zlib
 from collections.abc import Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
 
-from mintpilot.core.geometry import Box, Vec3
-from mintpilot.simulation.furnished.furniture import furniture, table
-from mintpilot.simulation.furnished.people import POSTURES, person
-from mintpilot.simulation.furnished.shapes import Assembly, Shown
+from mintpilot.core.geometry import Vec3
+from mintpilot.simulation.furnished.doors import Doorway, before, doorway, in_wall, shown_door
+from mintpilot.simulation.furnished.fittings import fittings
+from mintpilot.simulation.furnished.furniture import furniture, lie_m, table
+from mintpilot.simulation.furnished.people import LYING, person
+from mintpilot.simulation.furnished.shapes import Assembly, Part, Shown
 from mintpilot.simulation.furnished.style import Rgb, Style
-from mintpilot.simulation.furnished.things import SMALL, thing
+from mintpilot.simulation.furnished.things import SMALL, TABLEWARE, thing
 
 HEIGHT_M = 2.8
 VIEWS = 8
 FREE_M = 0.9
 """So much space is left around where it is looked at from, and between wall and camera."""
+PATTERNS = MappingProxyType(
+    {
+        "checker": ("CHECKER", "NONE", 2),
+        "tiles": ("FLAT", "EDGE", 1),
+        "speckles": ("FLAT", "RANDOM", 1),
+    }
+)
+"""Of floors and walls: MuJoCo's texture, its marks, and how many tiles wide it is."""
 TRIES = 60
 """A thing for which no place is found in so many tries is left out."""
 
@@ -35,20 +46,6 @@ class Look:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Doorway:
-    """A shut door in a wall."""
-
-    wall: int
-    """0: y = 0, 1: y = depth, 2: x = 0, 3: x = width."""
-    at_m: float
-    """Its middle along the wall."""
-    width_m: float
-    height_m: float
-    relief_m: float
-    colour: Rgb
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
 class FurnishedRoom:
     """A room and the truth about it."""
 
@@ -59,17 +56,19 @@ class FurnishedRoom:
     """Everything in it, doors included."""
     doors: tuple[Doorway, ...]
     looks: tuple[Look, ...]
+    fittings: tuple[Part, ...]
+    """What belongs to floor and walls, as carpets and pictures do."""
 
 
 def furnished_room(style: Style, seed: int) -> FurnishedRoom:
     """Draws a room: doors, people, tables with things on them, furniture along the walls, things on the floor."""
     rng = np.random.default_rng((zlib.crc32(style.name.encode()), seed))
-    size = (float(rng.uniform(6.5, 8.5)), float(rng.uniform(5.5, 7.0)))
-    doors = [_doorway(wall, style, size, rng) for wall in rng.permutation(4)[: int(rng.integers(1, 3))]]
+    size = (float(rng.uniform(*style.room_m[0])), float(rng.uniform(*style.room_m[1])))
+    doors = [doorway(int(wall), style, size, rng) for wall in rng.permutation(4)[: int(rng.integers(1, 3))]]
     looks = _looks(style, size, rng)
     keep: list[tuple[float, float, float]] = [(x, y, FREE_M - 0.4) for x, y, _ in (look.eye_m for look in looks)]
-    keep += [(*_before(door, size, 0.6), 0.9) for door in doors]
-    shown = [_shown_door(door, size) for door in doors]
+    keep += [(*before(door, size, 0.6), 0.9) for door in doors]
+    shown = [shown_door(door, size) for door in doors]
 
     def put(made: Shown, radius: float, *, at_wall: bool = False) -> Vec3 | None:
         for _ in range(TRIES):
@@ -80,22 +79,32 @@ def furnished_room(style: Style, seed: int) -> FurnishedRoom:
                 return (x, y, turn)
         return None
 
-    for posture in rng.permutation(POSTURES)[: int(rng.integers(1, 4))]:
+    for posture in rng.permutation(style.postures)[: int(rng.integers(*style.people))]:
         made = person(str(posture), style, rng)
-        put(made, 1.05 if posture in ("lying", "covered") else 0.6)
+        placed = None
+        if posture in LYING and style.lying_on:
+            rest = furniture(str(rng.choice(style.lying_on)), style, rng)
+            placed = put(rest, 1.05, at_wall=True)
+            if placed is not None:
+                shown.append(made.moved(lie_m(shown[-1]), placed[2]))
+        if placed is None:
+            put(made, 1.05 if posture in LYING else 0.6)
     for _ in range(int(rng.integers(1, 3))):
         made, half, top = table(style, rng)
         placed = put(made, math.hypot(*half))
         if placed is not None:
             shown += [one.moved((placed[0], placed[1], top), 0.0) for one in _on_table(style, half, placed[2], rng)]
-    for kind in rng.permutation(style.furniture)[: int(rng.integers(1, 4))]:
+    for kind in rng.permutation(style.furniture)[: int(rng.integers(*style.pieces))]:
         made = furniture(str(kind), style, rng)
         lo, hi = made.box_m.lo_m, made.box_m.hi_m
         put(made, max(hi[0] - lo[0], hi[1] - lo[1]) / 2, at_wall=True)
-    for _ in range(int(rng.integers(1, 5))):
-        kind = str(rng.choice([k for k in style.clutter if k not in ("mug", "bottle")]))
+    for _ in range(int(rng.integers(*style.things))):
+        kind = str(rng.choice([k for k in style.clutter if k not in TABLEWARE]))
         put(thing(kind, rng, largest_m=0.6), 0.45)
-    return FurnishedRoom(style=style, size_m=size, shown=tuple(shown), doors=tuple(doors), looks=looks)
+    return FurnishedRoom(
+        style=style, size_m=size, shown=tuple(shown), doors=tuple(doors), looks=looks,
+        fittings=fittings(style, size, doors, rng),
+    )  # fmt: skip
 
 
 def world_of(room: FurnishedRoom, mujoco: Any) -> Any:
@@ -111,17 +120,19 @@ def world_of(room: FurnishedRoom, mujoco: Any) -> Any:
     spec.visual.headlight.ambient = [style.ambient] * 3
     spec.visual.headlight.diffuse = [0.3] * 3
     spec.visual.headlight.specular = [0.0] * 3
-    for name, colours, tile in (("floor", style.floor, style.floor_tile_m), ("wall", style.walls, style.wall_tile_m)):
-        _add_pattern(spec, mujoco, name, colours, tile)
+    _add_pattern(spec, mujoco, "floor", style.floor_pattern, style.floor, style.floor_tile_m)
+    _add_pattern(spec, mujoco, "wall", style.wall_pattern, style.walls, style.wall_tile_m)
     shell = _shell(room)
     for number, (part, material) in enumerate(shell):
         _add(spec, mujoco, f"shell:{number}", part, material)
+    for number, part in enumerate(room.fittings):
+        _add(spec, mujoco, f"fitting:{number}", part, "")
     for number, one in enumerate(room.shown):
         for index, part in enumerate(one.parts):
             _add(spec, mujoco, f"shown:{number}:{index}", part, "")
-    for i, (x, y) in enumerate(((0.3, 0.3), (0.7, 0.7))):
+    for i, (x, y, z) in enumerate(style.lamps):
         spec.worldbody.add_light(
-            name=f"lamp:{i}", pos=[x * width, y * depth, HEIGHT_M - 0.2], dir=[0, 0, -1], castshadow=False,
+            name=f"lamp:{i}", pos=[x * width, y * depth, z], dir=[0, 0, -1], castshadow=False,
             diffuse=list(style.light), specular=[0.03] * 3, attenuation=[1, 0.03, 0.02],
             type=mujoco.mjtLightType.mjLIGHT_POINT,
         )  # fmt: skip
@@ -131,19 +142,6 @@ def world_of(room: FurnishedRoom, mujoco: Any) -> Any:
         axes = [s, -c, 0.0, c * down, s * down, level]
         spec.worldbody.add_camera(name=f"look-{i}", pos=list(look.eye_m), fovy=58.1, xyaxes=axes)
     return spec
-
-
-def _doorway(wall: int, style: Style, size: tuple[float, float], rng: np.random.Generator) -> Doorway:
-    width, height = (float(rng.uniform(*span)) for span in style.door_m)
-    along = size[0] if wall < 2 else size[1]
-    return Doorway(
-        wall=int(wall),
-        at_m=float(rng.uniform(1.2, along - 1.2)),
-        width_m=width,
-        height_m=height,
-        relief_m=float(rng.uniform(*style.relief_m)),
-        colour=style.doors[int(rng.integers(len(style.doors)))],
-    )
 
 
 def _looks(style: Style, size: tuple[float, float], rng: np.random.Generator) -> tuple[Look, ...]:
@@ -188,32 +186,6 @@ def _on_table(style: Style, half: tuple[float, float], turn: float, rng: np.rand
     return made
 
 
-def _before(door: Doorway, size: tuple[float, float], off: float) -> tuple[float, float]:
-    return ((door.at_m, off), (door.at_m, size[1] - off), (off, door.at_m), (size[0] - off, door.at_m))[door.wall]
-
-
-def _in_wall(door_wall: int, size: tuple[float, float], a: Sequence[float], b: Sequence[float]) -> Box:
-    """A block given by (along the wall, into the room, up) as a box; inside the wall the second is below 0."""
-    (u0, n0, z0), (u1, n1, z1) = a, b
-    lo, hi = {
-        0: ((u0, n0), (u1, n1)),
-        1: ((u0, size[1] - n1), (u1, size[1] - n0)),
-        2: ((n0, u0), (n1, u1)),
-        3: ((size[0] - n1, u0), (size[0] - n0, u1)),
-    }[door_wall]
-    return Box(lo_m=(*lo, z0), hi_m=(*hi, z1))
-
-
-def _shown_door(door: Doorway, size: tuple[float, float]) -> Shown:
-    made = Assembly()
-    a, b, r = door.at_m - door.width_m / 2, door.at_m + door.width_m / 2, -door.relief_m
-    leaf = _in_wall(door.wall, size, (a, r - 0.04, 0.0), (b, r, door.height_m))
-    made.block(leaf.lo_m, leaf.hi_m, door.colour)
-    handle = _in_wall(door.wall, size, (b - 0.16, r, 1.0), (b - 0.06, r + 0.04, 1.03))
-    made.block(handle.lo_m, handle.hi_m, (0.7, 0.7, 0.7))
-    return Shown(kind="door", name="door", labels=frozenset({"door"}), parts=tuple(made.parts))
-
-
 def _shell(room: FurnishedRoom) -> list[tuple[Any, str]]:
     """Floor, ceiling and walls around the doors, with frames, as parts with their materials."""
     (width, depth), parts = room.size_m, []
@@ -224,7 +196,7 @@ def _shell(room: FurnishedRoom) -> list[tuple[Any, str]]:
         parts.append((made.parts[0], material))
 
     block((-0.4, -0.4, -0.1), (width + 0.4, depth + 0.4, 0.0), room.style.floor[0], "floor")
-    block((-0.4, -0.4, HEIGHT_M), (width + 0.4, depth + 0.4, HEIGHT_M + 0.1), (0.85, 0.85, 0.85), "")
+    block((-0.4, -0.4, HEIGHT_M), (width + 0.4, depth + 0.4, HEIGHT_M + 0.1), room.style.ceiling, "")
     for wall in range(4):
         along = width if wall < 2 else depth
         at = -0.3
@@ -232,8 +204,11 @@ def _shell(room: FurnishedRoom) -> list[tuple[Any, str]]:
             a, b = door.at_m - door.width_m / 2, door.at_m + door.width_m / 2
             pieces = [((at, -0.3, 0.0), (a, 0.0, HEIGHT_M)), ((a, -0.3, door.height_m), (b, 0.0, HEIGHT_M))]
             for lo, hi in pieces:
-                box = _in_wall(wall, room.size_m, lo, hi)
+                box = in_wall(wall, room.size_m, lo, hi)
                 block(box.lo_m, box.hi_m, room.style.walls[0], "wall")
+            if door.form == "ajar":
+                box = in_wall(wall, room.size_m, (a, -0.3, 0.0), (b, -0.25, door.height_m))
+                block(box.lo_m, box.hi_m, (0.12, 0.11, 0.10), "")
             if room.style.framed:
                 trim = tuple(0.7 * c for c in door.colour)
                 for lo, hi in (
@@ -241,20 +216,22 @@ def _shell(room: FurnishedRoom) -> list[tuple[Any, str]]:
                     ((b, 0.0, 0.0), (b + 0.07, 0.015, door.height_m + 0.07)),
                     ((a, 0.0, door.height_m), (b, 0.015, door.height_m + 0.07)),
                 ):
-                    box = _in_wall(wall, room.size_m, lo, hi)
+                    box = in_wall(wall, room.size_m, lo, hi)
                     block(box.lo_m, box.hi_m, (trim[0], trim[1], trim[2]), "")
             at = b
-        box = _in_wall(wall, room.size_m, (at, -0.3, 0.0), (along + 0.3, 0.0, HEIGHT_M))
+        box = in_wall(wall, room.size_m, (at, -0.3, 0.0), (along + 0.3, 0.0, HEIGHT_M))
         block(box.lo_m, box.hi_m, room.style.walls[0], "wall")
     return parts
 
 
-def _add_pattern(spec: Any, mujoco: Any, name: str, colours: tuple[Rgb, Rgb], tile_m: float) -> None:
+def _add_pattern(spec: Any, mujoco: Any, name: str, pattern: str, colours: tuple[Rgb, Rgb], tile_m: float) -> None:
+    builtin, mark, cells = PATTERNS[pattern]
     spec.add_texture(
-        name=f"texture:{name}", type=mujoco.mjtTexture.mjTEXTURE_2D, builtin=mujoco.mjtBuiltin.mjBUILTIN_CHECKER,
-        rgb1=list(colours[0]), rgb2=list(colours[1]), width=64, height=64,
+        name=f"texture:{name}", type=mujoco.mjtTexture.mjTEXTURE_2D,
+        builtin=getattr(mujoco.mjtBuiltin, f"mjBUILTIN_{builtin}"), mark=getattr(mujoco.mjtMark, f"mjMARK_{mark}"),
+        rgb1=list(colours[0]), rgb2=list(colours[1]), markrgb=list(colours[1]), random=0.15, width=64, height=64,
     )  # fmt: skip
-    repeat = 0.5 / tile_m
+    repeat = 1 / (cells * tile_m)
     material = spec.add_material(name=name, texuniform=True, texrepeat=[repeat, repeat], shininess=0.1, specular=0.1)
     material.textures[mujoco.mjtTextureRole.mjTEXROLE_RGB] = f"texture:{name}"
 

@@ -1,11 +1,13 @@
 """Styles of furnished rooms: textures, lights, colours of doors, clothes, shapes of furniture, what lies about.
 
-Rules of perception may be chosen on `TUNED` styles only. `HELD_BACK` styles are for measuring.
+`mintpilot.simulation.furnished.styles` lists those there are.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+
+from mintpilot.core.geometry import Vec3
 
 Rgb = tuple[float, float, float]
 
@@ -50,6 +52,34 @@ class Style:
     """Kinds of furniture besides tables: names of `mintpilot.simulation.furnished.furniture.MAKERS`."""
     eye_m: tuple[float, float]
     """Heights from which it is looked at."""
+    room_m: tuple[tuple[float, float], tuple[float, float]] = ((6.5, 8.5), (5.5, 7.0))
+    """Inner width and depth."""
+    floor_pattern: str = "checker"
+    """Name of `mintpilot.simulation.furnished.room.PATTERNS`."""
+    wall_pattern: str = "checker"
+    ceiling: Rgb = (0.85, 0.85, 0.85)
+    lamps: tuple[Vec3, ...] = ((0.3, 0.3, 2.6), (0.7, 0.7, 2.6))
+    """Where they hang: shares of width and depth, height in metres."""
+    door_forms: tuple[str, ...] = ("plain",)
+    """Names of `mintpilot.simulation.furnished.doors.FORMS`."""
+    fittings: tuple[str, ...] = ()
+    """What belongs to floor and walls: names of `mintpilot.simulation.furnished.fittings.MAKERS`."""
+    cloth: tuple[Rgb, ...] = ((0.5, 0.5, 0.5),)
+    """Of carpets, curtains and what is painted on walls."""
+    postures: tuple[str, ...] = ("standing", "sitting", "crouching", "lying", "covered", "child")
+    """Of people: names of `mintpilot.simulation.furnished.people.POSTURES` or `MORE_POSTURES`."""
+    hair: tuple[Rgb, ...] = ((0.15, 0.10, 0.07),)
+    wear: tuple[str, ...] = ("",)
+    """What people have on besides: names of `mintpilot.simulation.furnished.people.WEAR`, or nothing."""
+    long_sleeves: bool = False
+    lying_on: tuple[str, ...] = ()
+    """Kinds of furniture on which those lie that lie, whenever there is room for it."""
+    people: tuple[int, int] = (1, 4)
+    """At least the first, fewer than the second; so below."""
+    pieces: tuple[int, int] = (1, 4)
+    """Of furniture."""
+    things: tuple[int, int] = (1, 5)
+    """On the floor."""
 
 
 OFFICE = Style(
@@ -124,6 +154,3 @@ CELLAR = Style(
     furniture=("shelf", "drum", "pile", "bench"),
     eye_m=(1.2, 1.8),
 )
-TUNED = {OFFICE.name: OFFICE}
-HELD_BACK = {style.name: style for style in (CLINIC, CELLAR)}
-STYLES = TUNED | HELD_BACK

@@ -1,0 +1,46 @@
+"""Who was found: people seen in pictures, and rooms in which somebody is said to be."""
+
+from __future__ import annotations
+
+from mintpilot.core.observation import PERSON
+from mintpilot.recording.frames import FRAMES, frame_name
+from mintpilot.recording.record import MissionRecord, Part, SeenRecord
+
+
+class PeopleSummary(Part):
+    """People of one mission."""
+
+    found: int
+    """Seen by the drone, each counted once. Doubtful ones are questions, and are not counted."""
+    reported: int
+    """Rooms in which somebody is by what an operator said; whether the drone saw them or not."""
+    pictures: tuple[str, ...]
+    """The best picture of each who was found, in the run folder; none where no run folder was written."""
+
+
+def people_of(record: MissionRecord) -> PeopleSummary:
+    """Counts the people of a record."""
+    found = people_seen(record)
+    return PeopleSummary(
+        found=len(found),
+        reported=sum(seen.kind == "room" and seen.state == "yes" for seen in record.seen),
+        pictures=tuple(f"{FRAMES}/{frame_name(s.view[0])}" for s in found if s.view) if record.run_dir else (),
+    )
+
+
+def people_lines(record: MissionRecord) -> list[str]:
+    """Who was found, in sentences, with the pictures that show them; nothing where nobody was."""
+    people = people_of(record)
+    lines = []
+    if people.found:
+        shown = f": {', '.join(people.pictures)}" if people.pictures else ""
+        lines.append(f"{people.found} {'person' if people.found == 1 else 'people'} seen{shown}")
+    if people.reported:
+        rooms = "1 room" if people.reported == 1 else f"{people.reported} rooms"
+        lines.append(f"somebody is inside of {rooms}, by what was answered")
+    return lines
+
+
+def people_seen(record: MissionRecord) -> list[SeenRecord]:
+    """Those that the drone saw."""
+    return [seen for seen in record.seen if seen.kind == "object" and seen.state == PERSON]
