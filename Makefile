@@ -36,6 +36,7 @@ check: setup ## formatting, lint, types and import rules
 bench: setup ## measure search and questions against their yardsticks, and write docs/results.md (BENCH=--quick: a taste)
 	@$(BIN)/python -m bench.search $(BENCH)
 	@$(BIN)/python -m bench.questions $(BENCH)
+	@$(BIN)/python -m bench.choices $(BENCH)
 
 results: bench ## measure everything that docs/results.md states but the tables of strategies, and write it
 	@$(BIN)/python -m bench.missions --seeds 20 --keep

@@ -12,10 +12,10 @@ import numpy as np
 
 from mintpilot.assembly.registry import load
 from mintpilot.core.errors import InfeasibleError
-from mintpilot.core.gap import BLOCKED, PASSABLE, Assumptions, GapKind, KnowledgeGap, obstacle_id
-from mintpilot.core.geometry import GridFrame
+from mintpilot.core.gap import BLOCKED, PASSABLE, Assumptions, Candidate, GapKind, KnowledgeGap, obstacle_id, target_id
+from mintpilot.core.geometry import GridFrame, Vec3
 from mintpilot.core.mission import AskingSettings
-from mintpilot.core.observation import RegionKind
+from mintpilot.core.observation import Attribute, RegionKind
 from mintpilot.core.plan import PlanningProblem, Site, Stop, VehicleLimits
 from mintpilot.core.ports import Ask, Fly, PlanSpace, Situation, Strategy
 from mintpilot.core.query import Query, answer_for
@@ -28,6 +28,8 @@ from mintpilot.reasoning.belief import prior_belief
 SHAPE = (24, 40)
 LIMITS = VehicleLimits(radius_m=0.01, margin_m=0.0, cruise_mps=1.0)
 TOLERANCE_S = 1e-6
+BOX = target_id(1, "box")
+COLOURS = ("red", "blue", "green", "white")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -35,14 +37,19 @@ class Expectation:
     """What to expect of one way of asking in one world."""
 
     questions: float
+    effort: float
+    """The operator's time, in units of a yes or no."""
     worse: float
     """Probability of flying a plan that costs more than delta_c above the omniscient planner's."""
 
 
-def random_problem(rng: np.random.Generator, regions: int) -> PlanningProblem:
-    """A hall with scattered obstacles and uncertain regions; drawn again until it can be flown."""
+def random_problem(rng: np.random.Generator, regions: int, *, boxes: int = 1) -> PlanningProblem:
+    """A hall with scattered obstacles, uncertain regions, and boxes of which one is meant, each as likely.
+
+    It is drawn again until it can be flown.
+    """
     while True:
-        problem = _draw(rng, regions)
+        problem = _draw(rng, regions, boxes)
         try:
             GridPlanner().open(problem)
         except InfeasibleError:
@@ -95,16 +102,21 @@ def _follow(strategy: Strategy, situation: Situation, truths: Sequence[tuple[Map
     decision = strategy.decide(situation)
     if isinstance(decision, Fly):
         worse = sum(p for truth, p in truths if _is_worse(decision, situation.space, truth, situation.settings))
-        return Expectation(questions=0.0, worse=worse)
+        return Expectation(questions=0.0, effort=0.0, worse=worse)
     assert isinstance(decision, Ask)
     query = decision.scored.query
-    total = Expectation(questions=sum(p for _, p in truths), worse=0.0)
+    asked = sum(p for _, p in truths)
+    total = Expectation(questions=asked, effort=asked * query.effort, worse=0.0)
     for part in range(query.part_count):
         left = [(truth, p) for truth, p in truths if query.part_of(truth) == part]
         if left:
             # Some ways of asking remember what they found: each branch goes on with its own memory.
             below = _follow(copy.deepcopy(strategy), answered(situation, query, part), left)
-            total = Expectation(questions=total.questions + below.questions, worse=total.worse + below.worse)
+            total = Expectation(
+                questions=total.questions + below.questions,
+                effort=total.effort + below.effort,
+                worse=total.worse + below.worse,
+            )
     return total
 
 
@@ -115,7 +127,7 @@ def _is_worse(decision: Fly, space: PlanSpace, truth: Mapping[str, str], setting
     return decision.plan.cost_s > best.cost_s + settings.delta_c_s + TOLERANCE_S
 
 
-def _draw(rng: np.random.Generator, count: int) -> PlanningProblem:
+def _draw(rng: np.random.Generator, count: int, boxes: int) -> PlanningProblem:
     height, width = SHAPE
     cells = np.where(rng.random((1, *SHAPE)) < 0.15, Cell.OCCUPIED, Cell.FREE).astype(np.uint8)
     start, goal = (0, int(rng.integers(height)), 0), (0, int(rng.integers(height)), width - 1)
@@ -139,12 +151,40 @@ def _draw(rng: np.random.Generator, count: int) -> PlanningProblem:
                 position_m=(x + wide / 2, y + tall / 2, 0.5),
             )
         )
-    (ax, ay, az), (bx, by, bz) = (frame.centres_of([cell])[0].tolist() for cell in (start, goal))
-    stop = Stop(id="go", action=Action.GO, sites=(Site(position_m=(bx, by, bz), reach_m=0.1),), dwell_s=0.0)
+    goals = [goal, *((0, int(rng.integers(height)), int(rng.integers(width // 2, width))) for _ in range(boxes - 1))]
+    for cell in goals:
+        cells[cell] = Cell.FREE
+    (ax, ay, az), *places = (tuple(frame.centres_of([cell])[0].tolist()) for cell in (start, *goals))
+    if boxes > 1:
+        gaps.append(_which_box(places))
+    sites = tuple(
+        Site(position_m=place, reach_m=0.1, value=f"b{i}" if boxes > 1 else "") for i, place in enumerate(places)
+    )
+    stop = Stop(id="go", action=Action.GO, sites=sites, gap=BOX if boxes > 1 else "", dwell_s=0.0)
     return PlanningProblem(
         map=SemanticMap(frame=frame, cells=cells, regions=tuple(regions)),
         start_m=(ax, ay, az),
         stops=(stop,),
         gaps=tuple(gaps),
         limits=LIMITS,
+    )
+
+
+def _which_box(places: Sequence[Vec3]) -> KnowledgeGap:
+    """Which box is meant: each has a colour and a size, and a name of its own."""
+    candidates = []
+    for i, place in enumerate(places):
+        colour, size = COLOURS[i % len(COLOURS)], ("small", "large")[i // 2 % 2]
+        attributes = (Attribute(name="colour", value=colour), Attribute(name="size", value=size))
+        words = f"the {size} {colour} box"
+        candidates.append(Candidate(id=f"b{i}", position_m=place, attributes=attributes, description=words))
+    return KnowledgeGap(
+        id=BOX,
+        kind=GapKind.TARGET,
+        subject="the box",
+        description="the box",
+        values=tuple(c.id for c in candidates),
+        prior=(1 / len(candidates),) * len(candidates),
+        position_m=places[0],
+        candidates=tuple(candidates),
     )

@@ -16,6 +16,7 @@ from mintpilot.conformance import (
     check_operator,
     check_perception,
     check_planner,
+    check_policy,
     check_recorder,
     check_strategy,
     check_vehicle,
@@ -107,6 +108,38 @@ class Blind(GridPlanner):
 def test_a_planner():
     with pytest.raises(ConformanceError, match="leads through 'cloud'"):
         check_planner(Blind)
+
+
+class Fickle:
+    def __init__(self):
+        self.rng = np.random.default_rng()
+
+    def q_values(self, state):
+        return self.rng.random(len(state.task.allowed[state.cell]))
+
+
+class Lost:
+    def q_values(self, state):
+        return np.full(len(state.task.allowed[state.cell]), np.nan)
+
+
+class Narrow:
+    def q_values(self, state):
+        return np.zeros(4)
+
+
+class Brittle:
+    def q_values(self, state):
+        return {(1, 4, 5): np.zeros(8)}[state.task.free.shape]
+
+
+@pytest.mark.parametrize(
+    ("policy", "said"),
+    [(Fickle, "asked again"), (Lost, "nan"), (Narrow, "shape"), (Brittle, "on another grid it fails with KeyError")],
+)
+def test_a_policy(policy, said):
+    with pytest.raises(ConformanceError, match=said):
+        check_policy(policy)
 
 
 class Quiet:

@@ -23,6 +23,7 @@ from mintpilot.conformance import (
     check_operator,
     check_perception,
     check_planner,
+    check_policy,
     check_recorder,
     check_strategy,
     check_vehicle,
@@ -43,6 +44,11 @@ from mintpilot.simulation.mujoco_vehicle import MujocoSimulator
 @pytest.mark.parametrize("name", names("planner"))
 def test_planners(name):
     check_planner(load("planner", name))
+
+
+@pytest.mark.parametrize("name", names("policy"))
+def test_policies(name):
+    check_policy(load("policy", name))
 
 
 @pytest.mark.parametrize("name", names("metric"))

@@ -30,6 +30,7 @@ def situation(seed: int, error: float = 0.0, n: int = 8, classes: int = 3, cuts:
         regret_s=np.where(class_of[None, :] == np.arange(classes)[:, None], 0.0, rng.uniform(1, 9, (classes, n))),
         parts=(rng.random((cuts, n)) >= 0.5).astype(np.int8),
         part_count=np.full(cuts, 2),
+        effort=np.ones(cuts),
         settings=replace(EXACT, answer_error=error),
     )
 
@@ -72,7 +73,9 @@ def test_ec2_counts_the_edges_that_are_cut(seed: int) -> None:
 @pytest.mark.parametrize("error", [0.0, 0.1, 0.3])
 def test_a_cut_that_tells_nothing_is_worth_nothing(error: float) -> None:
     s = situation(1, error)
-    s = replace(s, parts=np.vstack([np.ones(8, np.int8), np.zeros(8, np.int8)]), part_count=np.array([2, 2]))
+    s = replace(
+        s, parts=np.vstack([np.ones(8, np.int8), np.zeros(8, np.int8)]), part_count=np.array([2, 2]), effort=np.ones(2)
+    )
     for objective in (InformationGain(), Ec2(), ValueOfInformation(), Random()):
         assert (objective.scores(s) <= 1e-9).all()
 
@@ -133,6 +136,7 @@ def detours(seed: int, gaps: int = 4, ways: int = 10, alpha: float = 0.0) -> Que
         regret_s=regret[used],
         parts=(~np.array([*open_.T, *both])).astype(np.int8),
         part_count=np.full(gaps + 2 * len(pairs), 2),
+        effort=np.ones(gaps + 2 * len(pairs)),
         settings=replace(EXACT, delta_c_s=1.0, alpha=alpha),
     )
 
@@ -206,6 +210,7 @@ def test_an_exclusive_or_does_not_end_the_asking() -> None:
         regret_s=np.array([[0.0, 9.0, 9.0, 0.0], [9.0, 0.0, 0.0, 9.0]]),
         parts=np.array([[0, 0, 1, 1], [0, 1, 0, 1]], np.int8),
         part_count=np.array([2, 2]),
+        effort=np.ones(2),
         settings=EXACT,
     )
     assert (InformationGain().scores(s) > 0).all()

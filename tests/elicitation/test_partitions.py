@@ -17,6 +17,7 @@ from mintpilot.core.gap import KnowledgeGap
 from mintpilot.core.mission import AskingSettings
 from mintpilot.core.ports import QuerySituation
 from mintpilot.core.query import (
+    CHOICE_EFFORT,
     NO_PART,
     YES_PART,
     Answer,
@@ -63,6 +64,7 @@ def situation(seed: int, error: float = 0.0, n: int = 8, queries: int = 6, most:
         regret_s=np.where(class_of[None, :] == np.arange(3)[:, None], 0.0, rng.uniform(1, 9, (3, n))),
         parts=np.array([rng.integers(0, c, n) for c in count], np.int8),
         part_count=count.astype(np.int64),
+        effort=np.ones(queries),
         settings=replace(EXACT, answer_error=error),
     )
 
@@ -159,17 +161,17 @@ def test_splitting_a_part_never_lowers_the_gain(seed: int) -> None:
 
 
 def fewest(s: QuerySituation) -> float:
-    """Plain recursion over all ways to ask."""
+    """Plain recursion over all ways to ask: the operator's time in units of a yes or no."""
 
     @cache
     def follow(alive: frozenset[int]) -> float:
         if len({s.class_of[i] for i in alive}) == 1 or any(all(row[i] <= 0 for i in alive) for row in s.regret_s):
             return 0.0
         total, best = sum(s.probability[i] for i in alive), np.inf
-        for row, count in zip(s.parts, s.part_count, strict=True):
+        for row, count, effort in zip(s.parts, s.part_count, s.effort, strict=True):
             parts = [p for k in range(count) if (p := frozenset(i for i in alive if row[i] == k))]
             if len(parts) > 1:
-                best = min(best, 1 + sum(sum(s.probability[i] for i in p) / total * follow(p) for p in parts))
+                best = min(best, effort + sum(sum(s.probability[i] for i in p) / total * follow(p) for p in parts))
         return 0.0 if np.isinf(best) else best
 
     return follow(frozenset(range(len(s.probability))))
@@ -178,11 +180,12 @@ def fewest(s: QuerySituation) -> float:
 @settings(max_examples=30, deadline=None)
 @given(SEEDS)
 def test_optimal_is_optimal_with_choices_and_never_needs_more_than_without(seed: int) -> None:
-    s = situation(seed, n=7, queries=6)
+    drawn = situation(seed, n=7, queries=6)
+    s = replace(drawn, effort=np.where(drawn.part_count > 2, CHOICE_EFFORT, 1.0))
     best = max(Optimal().scores(s))
     assert (1 / best if best else 0.0) == pytest.approx(fewest(s))
     two = s.part_count == 2
-    without = replace(s, parts=s.parts[two], part_count=s.part_count[two])
+    without = replace(s, parts=s.parts[two], part_count=s.part_count[two], effort=s.effort[two])
     if two.any() and (alone := max(Optimal().scores(without))) > 0 and settled(without):
         assert 1 / best <= 1 / alone + 1e-9
 
@@ -322,7 +325,7 @@ def test_a_choice_is_one_short_question_with_a_consequence_for_each_reply() -> N
     pick = choice([option(box, "box-1"), option(box, "box-2")], (box,))
     for attempt in (1, 2):
         question = word_question(pick, (box,), None, attempt=attempt)
-        assert "the box-1, the box-2 or none of these" in question.text
+        assert "1 the box-1, 2 the box-2 or 3 none of these" in question.text
         assert question.text.endswith("?")
         assert len(question.text.split()) <= MAX_WORDS
         assert len(question.option_means) == pick.part_count

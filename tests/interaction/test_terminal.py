@@ -19,6 +19,7 @@ import pytest
 from rich.console import Console
 from tests.driving import ask as put
 from tests.language.questions import BOX
+from tests.language.test_options import BOX as CHOICE
 
 from mintpilot.assembly.talk import Talk
 from mintpilot.core.errors import DeviceError, InputError
@@ -94,6 +95,20 @@ def test_orders_are_obeyed_at_once(pipe, typed, command):
     pipe.say(typed + b"\n")
     answer = put(asked, ASKED, 5.0, real=True)
     assert answer is command
+
+
+@pytest.mark.parametrize(
+    ("typed", "option", "standing"),
+    [(b"2", 1, Standing.PLAIN), (b"the second one", 1, Standing.PLAIN), (b"the red one", 0, Standing.UNCONFIRMED)],
+)
+def test_a_choice_is_answered_by_number_or_by_what_tells_the_thing(pipe, typed, option, standing):
+    asked, shown = operator(pipe)
+    pipe.say(b"yes\n" + typed + b"\n")
+    answer = put(asked, CHOICE, 5.0, real=True)
+    assert (answer.option, answer.standing) == (option, standing)
+    text = shown.getvalue()
+    assert "2  the large blue box" in text
+    assert "give the number of an option" in text
 
 
 def test_what_is_not_understood_is_asked_for_again(pipe):

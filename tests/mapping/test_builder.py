@@ -15,6 +15,7 @@ from mintpilot.core.observation import Attribute, Detection, Frame
 from mintpilot.core.plan import VehicleLimits
 from mintpilot.core.semantic_map import Cell, Knowledge, SemanticMap
 from mintpilot.mapping.builder import MapBuilder
+from mintpilot.uncertainty.doubts import is_doubtful_person
 
 ROOM = Box(lo_m=(0, 0, 0), hi_m=(8, 6, 3))
 LATTICE = GridFrame(origin_m=(0.0, 0.0, 0.0), resolution_m=0.2, shape=(15, 30, 40))
@@ -307,3 +308,13 @@ def test_a_map_on_another_lattice_is_refused() -> None:
     stranger = SemanticMap(frame=other, cells=np.zeros(other.shape, np.uint8))
     with pytest.raises(MapError, match="same lattice"):
         builder().snapshot(stranger)
+
+
+def test_somebody_glimpsed_once_stays_in_doubt_until_seen_again():
+    made = builder()
+    box = Box(lo_m=(3.0, 2.0, 0.0), hi_m=(4.7, 2.5, 0.3))
+    for index, frame in enumerate(see(ROOM, [], pose((1.0, 2.0, 1.5), turn, 0.2)) for turn in (0.0, 0.3)):
+        made.integrate(frame, [Detection(label="person", score=0.9, box_m=box, frame_index=index)])
+        (person,) = made.snapshot().objects
+        assert is_doubtful_person(person) == (index == 0)
+    assert not person.names

@@ -8,7 +8,9 @@ import jsonschema
 import pytest
 import yaml
 
+from mintpilot.core.errors import MissionError
 from mintpilot.core.gap import ABSENT, BLOCKED, PASSABLE, PRESENT
+from mintpilot.core.geometry import Box
 from mintpilot.core.mission import AskingSettings, CriticalityRule, SurveySettings
 from mintpilot.core.observation import RegionKind
 from mintpilot.core.plan import VehicleLimits
@@ -98,3 +100,10 @@ def test_the_example_map_becomes_core_nouns():
     assert limits_of(file).endurance_s == float("inf")
     assert asking_of(file).max_questions == 10
     assert correlations_of(file) == ()
+
+
+def test_a_battery_below_take_off_and_landing_is_refused_with_what_they_need():
+    file = read_mission(EXAMPLES[0])
+    empty = file.model_copy(update={"vehicle": file.vehicle.model_copy(update={"endurance_s": 1.0, "reserve_s": 0.0})})
+    with pytest.raises(MissionError, match=r"endurance_s = 1: take-off, landing and the reserve alone need 1\.6 s"):
+        mission_of(empty, start_m=(1.0, 1.0, 1.2), volume=Box(lo_m=(0, 0, 0), hi_m=(9, 9, 3)))

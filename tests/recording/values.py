@@ -21,7 +21,7 @@ from mintpilot.core.geometry import Box, GridFrame
 from mintpilot.core.georeference import Georeference
 from mintpilot.core.mission import AskingSettings
 from mintpilot.core.observation import CameraModel, Frame, RegionKind
-from mintpilot.core.plan import Plan, VehicleLimits
+from mintpilot.core.plan import Look, Plan, VehicleLimits
 from mintpilot.core.query import Answer, Evidence, Query, Reply
 from mintpilot.core.semantic_map import Knowledge, MapObject, Region, Room, SemanticMap
 
@@ -178,6 +178,8 @@ def built(cls: Any, depth: int) -> st.SearchStrategy[Any]:
     if cls is Answer:
         fields["reply"] = st.sampled_from([reply for reply in Reply if reply is not Reply.OPTION])
         fields["option"] = st.none()
+    if cls is Look:
+        fields |= {"dwell_s": st.floats(0, 999), "sees": st.floats(0.01, 1)}
     if cls is Evidence:
         fields["part"] = st.integers(0, 1)
     if cls is Plan:  # else the plan computes one from the way, and the way makes no sense here

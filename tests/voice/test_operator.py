@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tests.language.test_options import BOX as CHOICE
 
 from mintpilot.assembly.sample_question import sample_question
 from mintpilot.assembly.talk import Talk
@@ -25,7 +26,7 @@ from mintpilot.voice.ports import RATE_HZ, SoundLink
 
 WORDS = (
     "yes", "no", "confirm", "stop", "land", "come back", "continue", "stand by", "I don't know", "maybe", "say again",
-    "why", "banana", "affirmative", "okay",
+    "why", "banana", "affirmative", "okay", "two",
 )  # fmt: skip
 
 
@@ -87,10 +88,13 @@ class Scene:
         return self.passes()
 
     def asks(self, kind: GapKind = GapKind.OBSTACLE) -> Question:
-        question = replace(sample_question(kind), id="q1")
-        self.operator.show(question, 30.0)
-        assert [type(e) for e in self.passes()] == [QuestionShown]
-        return question
+        return self.shows(sample_question(kind))
+
+    def shows(self, question: Question) -> Question:
+        put = replace(question, id="q1")
+        self.operator.show(put, 30.0)
+        assert QuestionShown in [type(e) for e in self.passes(8.0)]
+        return put
 
     def reads_back(self, question: Question, reply: Reply = Reply.YES) -> None:
         pending = Answer(reply=reply, latency_s=1.0, by="voice", standing=Standing.UNCONFIRMED)
@@ -127,6 +131,19 @@ def test_confirm_confirms_what_was_read_back_and_nothing_before_that(scene: Scen
     scene.reads_back(question)
     (answer,) = _answers(scene.says("confirm"))
     assert (answer.reply, answer.standing) == (Reply.YES, Standing.CONFIRMED)
+
+
+def test_an_option_is_read_back_with_its_number_and_needs_the_word_confirm(scene: Scene) -> None:
+    scene.shows(CHOICE)
+    (answer,) = _answers(scene.says("two"))
+    assert (answer.option, answer.by) == (1, "voice")
+    scene.operator.show(replace(CHOICE, id="q1", read_back=answer), 30.0)
+    assert _answers(scene.passes(6.0)) == []
+    assert scene.captions[-1].startswith("I understood 2, the large blue box")
+    assert _answers(scene.says("yes")) == []
+    scene.passes(6.0)
+    (confirmed,) = _answers(scene.says("confirm"))
+    assert (confirmed.option, confirmed.standing) == (1, Standing.CONFIRMED)
 
 
 def test_a_no_that_adds_caution_counts_at_once(scene: Scene) -> None:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, TypeAlias, cast
 
 from mintpilot.assembly.components import Choices, VehicleChoice, components_for, deliberation_parts, scripted_operator
 from mintpilot.assembly.deliberation_report import DeliberationReport, deliberation_report
+from mintpilot.assembly.policies import make_planner
 from mintpilot.assembly.registry import names
 from mintpilot.assembly.strategies import Argument, strategy_label
 from mintpilot.assembly.talk import Talk, talk_for
@@ -40,6 +41,7 @@ def plan_mission(
     *,
     strategy: str = "mint",
     strategy_arguments: Mapping[str, Argument] | None = None,
+    planner: str = "grid",
     seed: int | None = None,
     base: Path | None = None,
     llm: str | LanguageModel | None = None,
@@ -51,6 +53,7 @@ def plan_mission(
         mission: a mission file's path, or its contents.
         strategy: name of the method of asking.
         strategy_arguments: its own, e.g. ``{"quantile": 0.8}``; they override those of the file.
+        planner: who plans: ``"grid"``, ``"policy"`` (by exact values), ``"policy:mine.npz"``, or a plug-in's name.
         seed: overrides the seed in the file.
         base: folder that file names in the mission are relative to; default: that of the file, or the present one.
         llm: language model by its registered name, or one that was made already; default: as the file says.
@@ -64,7 +67,8 @@ def plan_mission(
     """
     file, folder = _opened(mission, base)
     with talk_for(file.language, llm=llm, lang=lang) as talk:
-        choices = Choices(strategy=strategy, strategy_arguments=_arguments(file, strategy, strategy_arguments))
+        arguments = _arguments(file, strategy, strategy_arguments)
+        choices = Choices(strategy=strategy, strategy_arguments=arguments, planner=planner)
         return _planned(file, folder, talk, choices, seed=seed)
 
 
@@ -98,6 +102,7 @@ def run_mission(
     vehicle: str = "mujoco",
     strategy: str = "mint",
     strategy_arguments: Mapping[str, Argument] | None = None,
+    planner: str = "grid",
     think: str | float | None = None,
     seed: int | None = None,
     out: Path | None = None,
@@ -119,6 +124,7 @@ def run_mission(
             ``"mavlink://udpin:127.0.0.1:14540"``.
         strategy: name of the method of asking.
         strategy_arguments: its own, e.g. ``{"quantile": 0.8}``; they override those of the file.
+        planner: who plans: ``"grid"``, ``"policy"`` (by exact values), ``"policy:mine.npz"``, or a plug-in's name.
         think: how long the scripted operator takes for an answer, seconds: ``5``, or drawn evenly: ``"2..8"``; default:
             as the file says.
         seed: overrides the seed in the file.
@@ -149,6 +155,7 @@ def run_mission(
     choices = Choices(
         strategy=strategy,
         strategy_arguments=_arguments(file, strategy, strategy_arguments),
+        planner=planner,
         vehicle=vehicle_choice(vehicle),
         address=vehicle if "://" in vehicle else "",
         accept_failsafes=accept_failsafes,
@@ -157,6 +164,7 @@ def run_mission(
         namers=tuple(file.perception.namers) if perception in (None, file.perception.use) else (),
         calibration=_calibration(file, folder) if perception in (None, file.perception.use) else None,
     )
+    make_planner(planner)  # a wrong name, or a file that cannot be used, is told before anything is kept
     with talk_for(file.language, llm=llm, lang=lang) as talk:
         world = build_world(file, base=folder, seed=seed, parse=talk.parse)
         several = operator if isinstance(operator, tuple) else (operator,)

@@ -67,6 +67,10 @@ def _on_map(parts: DeliberationParts, map: SemanticMap) -> list[str]:
 
 
 def _battery(endurance_s: float, need_s: float | None) -> str:
-    has = "without limit" if math.isinf(endurance_s) else f"for {endurance_s:.0f} s of flight"
+    has = (
+        "without limit"
+        if math.isinf(endurance_s)
+        else f"for {endurance_s:.0f} s of planned flight (some is kept for braking, corners and gusts)"
+    )
     need = "" if need_s is None else f"; the mission needs {need_s:.0f} s if all goes well"
     return f"Battery: {has}{need}."

@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mintpilot.assembly.briefing import briefing_of
-from mintpilot.assembly.registry import load
+from mintpilot.assembly.policies import make_metric, make_planner
+from mintpilot.assembly.stated_looks import with_stated_looks
 from mintpilot.assembly.strategies import Argument, make_objective, make_strategy, strategy_label
 from mintpilot.assembly.talk import Talk
 from mintpilot.assembly.worlds import World
@@ -84,9 +85,9 @@ def deliberation_parts(world: World, choices: Choices, talk: Talk | None = None)
     return DeliberationParts(
         mission=world.mission,
         task=world.task,
-        planner=load("planner", choices.planner)(),
+        planner=make_planner(choices.planner),
         strategy=make_strategy(choices.strategy, seed=world.seed, arguments=choices.strategy_arguments),
-        metric=load("metric", asking.impact_metric)(),
+        metric=make_metric(asking.impact_metric),
         objective=make_objective(asking.objective, seed=world.seed),
         groups=world.groups,
         proposer=talk.proposer if talk is not None else None,
@@ -207,6 +208,8 @@ class _Components(AbstractContextManager[MissionComponents]):
         given: MapSource = GivenMap(world.map)
         if not world.is_map:
             given = SceneMapSource(world.scene, world.map, kinematic.state)
+        if world.mission.looks:
+            given = with_stated_looks(given, world, kinematic.state)
         changes = any(solid.appears_s > 0 for solid in world.scene.solids)
         return self._made(kinematic, given, surveys=False, watch_map=changes)
 

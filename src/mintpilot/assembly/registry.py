@@ -45,9 +45,16 @@ BUILT_IN: Final = MappingProxyType(
                 "frechet": "mintpilot.reasoning.metrics:FrechetMetric",
                 "hausdorff": "mintpilot.reasoning.metrics:HausdorffMetric",
                 "path-variance": "mintpilot.reasoning.metrics:PathVarianceMetric",
+                "q-value": "mintpilot.policies.metric:QValueMetric",
             }
         ),
-        "planner": MappingProxyType({"grid": "mintpilot.planning.task_planner:GridPlanner"}),
+        "planner": MappingProxyType(
+            {
+                "grid": "mintpilot.planning.task_planner:GridPlanner",
+                "policy": "mintpilot.policies.planner:PolicyPlanner",
+            }
+        ),
+        "policy": MappingProxyType({"exact": "mintpilot.policies.exact:ExactPolicy"}),
         "perception": MappingProxyType(
             {
                 "geometric": "mintpilot.perception.geometric:GeometricPerception",

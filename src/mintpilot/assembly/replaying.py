@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
+from mintpilot.assembly.policies import make_metric, make_planner
 from mintpilot.assembly.registry import load
 from mintpilot.assembly.talk import Talk
 from mintpilot.core.errors import RecordError
@@ -56,9 +57,9 @@ def parts_of(started: MissionStarted) -> DeliberationParts:
     return DeliberationParts(
         mission=started.mission,
         task=started.task,
-        planner=load("planner", started.planner)(),
+        planner=make_planner(started.planner),
         strategy=load("strategy", started.strategy)(),
-        metric=load("metric", asking.impact_metric)(),
+        metric=make_metric(asking.impact_metric),
         objective=load("objective", asking.objective)(),
         groups=started.groups,
         word=Talk(lang=started.language).word,

@@ -23,7 +23,7 @@ def sample_question(kind: GapKind, *, lang: str = ENGLISH, candidates: Sequence[
     Raises:
         UnknownNameError: the language is not known.
     """
-    return question_about(target_gap(candidates or _BOXES) if kind is GapKind.TARGET else _PLACES[kind], lang=lang)
+    return question_about(target_gap(candidates or BOXES) if kind is GapKind.TARGET else _PLACES[kind], lang=lang)
 
 
 def question_about(gap: KnowledgeGap, *, lang: str = ENGLISH) -> Question:
@@ -66,7 +66,7 @@ def _first_attribute(gap: KnowledgeGap) -> Literal:
     return _is(gap, gap.values[0])
 
 
-_BOXES = (_box("box-1", "small", "red"), _box("box-2", "large", "blue"), _box("box-3", "small", "blue"))
+BOXES = (_box("box-1", "small", "red"), _box("box-2", "large", "blue"), _box("box-3", "small", "blue"))
 _PLACES = {
     GapKind.OBSTACLE: _place("smoke-1", GapKind.OBSTACLE, "the grey smoke near the gate", (PASSABLE, BLOCKED)),
     GapKind.PRESENCE: _place("room-1", GapKind.PRESENCE, "the closed room with the brown door", (PRESENT, ABSENT)),

@@ -10,6 +10,7 @@ from typing import Any, Final, TypeAlias, get_type_hints
 from mintpilot.assembly.registry import load
 from mintpilot.core.errors import InputError
 from mintpilot.core.ports import QueryObjective, Strategy
+from mintpilot.strategies.looking import MayLook
 from mintpilot.strategies.priced import CountsPrice
 from mintpilot.strategies.waiting import CountsWaiting
 from mintpilot.strategies.within_limits import WithinLimits
@@ -24,7 +25,8 @@ def make_strategy(name: str, *, seed: int, arguments: Mapping[str, Argument] | N
     """A fresh strategy. Used by missions, plans, the benchmark and the Gymnasium environment alike.
 
     Whatever bound on the work it meets, it decides on the cautious plan then (`WithinLimits`); it does not ask where
-    waiting may lose more than an answer gives (`CountsWaiting`), or no policy is worth its price (`CountsPrice`).
+    waiting may lose more than an answer gives (`CountsWaiting`), or no policy is worth its price (`CountsPrice`); and
+    it looks where that pays and tells more a second (`MayLook`).
 
     Args:
         name: as it is registered.
@@ -36,7 +38,7 @@ def make_strategy(name: str, *, seed: int, arguments: Mapping[str, Argument] | N
         InputError: it takes no such argument, or not that value.
     """
     made: Strategy = _made("strategy", name, seed, arguments or {})
-    return WithinLimits(CountsWaiting(CountsPrice(made)))
+    return WithinLimits(MayLook(CountsWaiting(CountsPrice(made))))
 
 
 def make_objective(name: str, *, seed: int) -> QueryObjective:

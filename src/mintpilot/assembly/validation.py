@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator
 from functools import partial
 from pathlib import Path
 
+from mintpilot.assembly.policies import check_metric_name
 from mintpilot.assembly.registry import check_name
 from mintpilot.assembly.worlds import build_world, listed_words, scenario_of
 from mintpilot.core.errors import MintPilotError
@@ -39,7 +40,7 @@ def validation_problems(path: str | Path, file: MissionFile) -> list[Problem]:
 def _mistakes(file: MissionFile, base: Path) -> Iterator[tuple[Place, str]]:
     found = [
         *_tried(("asking", "objective"), lambda: check_name("objective", file.asking.objective)),
-        *_tried(("asking", "impact_metric"), lambda: check_name("metric", file.asking.impact_metric)),
+        *_tried(("asking", "impact_metric"), lambda: check_metric_name(file.asking.impact_metric)),
         *_strategy_mistakes(file),
         *_tried(("perception", "use"), lambda: check_name("perception", file.perception.use)),
         *(

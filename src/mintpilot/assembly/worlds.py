@@ -26,6 +26,7 @@ from mintpilot.mission_file.schema_map import load_bare_map, map_of
 from mintpilot.mission_file.schema_scene import ClosedRoomSpec, PersonSpec, SceneSpec
 from mintpilot.mission_file.schema_world import MapWorld, ScenarioWorld, SceneWorld, SeenWorld
 from mintpilot.mission_file.seen_map import load_map
+from mintpilot.mission_file.values import with_values
 from mintpilot.simulation.scene import ClosedRoom, FlightRules, Person, Scene, Shape, Smoke, Solid
 from mintpilot.uncertainty.findings import find_gaps
 from mintpilot.uncertainty.keep_away import with_keep_away
@@ -194,8 +195,9 @@ def _task_on_map(file: MissionFile, parse: Parse, start: Vec3, layer_m: float | 
 
 
 def _on_map(file: MissionFile, map_: SemanticMap, task: Task, start: Vec3, seed: int) -> World:
-    truths = truths_of(file)
     mission = mission_of(file, start_m=start, volume=map_.frame.box)
+    valued = with_values(map_, file.values, mission.limits)
+    map_, truths = valued.map, truths_of(file) | valued.truths
     problems = find_gaps(map_, task, start_m=start).problems if task.needs_confirmation else ()
     if problems:
         raise InputError(f"'{mission.instruction}' was read by a language model: {' '.join(problems)}")
@@ -208,7 +210,7 @@ def _on_map(file: MissionFile, map_: SemanticMap, task: Task, start: Vec3, seed:
         map=with_keep_away(with_solid_objects(map_, mission.limits.clearance_m), task, start_m=start),
         is_map=True,
         seed=seed,
-        groups=correlations_of(file),
+        groups=(*correlations_of(file), *valued.groups),
     )
 
 

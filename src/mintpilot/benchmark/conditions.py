@@ -13,7 +13,7 @@ from mintpilot.assembly.worlds import World, build_world
 from mintpilot.benchmark.experiment import Cell, Condition, Experiment
 from mintpilot.benchmark.methods import Method
 from mintpilot.core.geometry import Box, Floats, GridFrame, Ints
-from mintpilot.core.mission import AskingSettings, CriticalityRule, WhileWaiting
+from mintpilot.core.mission import AskingSettings, CriticalityRule, QueryKinds, WhileWaiting
 from mintpilot.core.semantic_map import Cell as Voxel
 from mintpilot.core.semantic_map import MapObject, SemanticMap
 from mintpilot.mission_file.schema import MissionFile
@@ -97,7 +97,7 @@ def _moved_object(thing: MapObject, off_m: Floats) -> MapObject:
 
 
 def _typed(values: dict[str, str | float]) -> dict[str, Any]:
-    kinds = {"rule": CriticalityRule, "while_waiting": WhileWaiting}
+    kinds = {"rule": CriticalityRule, "while_waiting": WhileWaiting, "kinds": QueryKinds}
     return {k: kinds[k](str(v)) if k in kinds else v for k, v in values.items()}
 
 

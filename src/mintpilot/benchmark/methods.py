@@ -29,6 +29,7 @@ _OBJECTIVES = ("information-gain", "ec2", "value-of-information", "optimal")
 VARIANTS: Final = MappingProxyType(
     {
         "mint-paper": Method(name="mint-paper", strategy="mint", asking={"rule": "paper"}),
+        "mint-unasked": Method(name="mint-unasked", strategy="mint", asking={"max_questions": 0.0}),
         "mint-holding": Method(name="mint-holding", strategy="mint", asking={"while_waiting": "hold"}),
         **{name: Method(name=name, strategy="mint", asking={"objective": name}) for name in _OBJECTIVES},
     }

@@ -18,6 +18,7 @@ from mintpilot.elicitation.objectives.optimal import Optimal
 from mintpilot.mission.deliberation import Deliberation, DeliberationParts
 from mintpilot.mission.rehearsal import begin
 from mintpilot.reasoning.classes import least_cost_s
+from mintpilot.simulation.judge import SceneJudge
 
 PERSON_M = 0.3
 """Half the edge of a person's mark in pictures."""
@@ -51,6 +52,7 @@ def survey_world(world: World, *, experiment: str, cell: str, planner: WarmPlann
             seed=world.seed,
             possible=False,
             best_s=None,
+            people_reachable=0,
             gaps=(),
             least_questions=0.0,
             outline_m=outline,
@@ -67,6 +69,7 @@ def survey_world(world: World, *, experiment: str, cell: str, planner: WarmPlann
         seed=world.seed,
         possible=best is not None and not best.leaves_undone,
         best_s=best.cost_s if best else None,
+        people_reachable=people_reached(best, world) if best else 0,
         gaps=tuple(
             GapTruth(
                 id=gap.id,
@@ -81,6 +84,15 @@ def survey_world(world: World, *, experiment: str, cell: str, planner: WarmPlann
         outline_m=outline,
         boxes=boxes,
     )
+
+
+def people_reached(plan: Plan, world: World) -> int:
+    """How many of the people who need help are reached where the plan is flown as it is meant, by the judge's rules."""
+    judge = SceneJudge(world.scene, world.rules)
+    for leg in plan.legs:
+        x, y, z = leg.path_m[-1]
+        judge.acted(leg.stop, (float(x), float(y), float(z)))
+    return judge.people()[0]
 
 
 def mattered(gap: KnowledgeGap, given: Assumptions, space: PlanSpace, settings: AskingSettings) -> bool:

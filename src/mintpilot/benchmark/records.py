@@ -118,6 +118,8 @@ class WorldRecord(Part):
     """Whether that planner finds a plan."""
     best_s: float | None
     """Cost of its plan."""
+    people_reachable: int | None = None
+    """Of the people who need help, how many its plan reaches; None in records of before this was counted."""
     gaps: tuple[GapTruth, ...]
     least_questions: float | None
     """Fewest questions that any method needs on average over the truths that the prior allows, by exact dynamic

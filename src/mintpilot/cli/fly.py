@@ -61,6 +61,8 @@ class FlightOptions:
     """How long the scripted operator thinks, seconds; None: as the mission file says."""
     strategy_args: tuple[str, ...] = ()
     """Each ``NAME=VALUE``."""
+    planner: str = "grid"
+    """Who plans, by name."""
     llm: str | None = None
     """Language model by name; None: as the mission file says."""
     lang: str | None = None
@@ -115,6 +117,7 @@ def fly(path: Path, options: FlightOptions) -> ExitCode:
                 vehicle=options.vehicle,
                 strategy=options.strategy,
                 strategy_arguments=arguments,
+                planner=options.planner,
                 think=options.think,
                 seed=options.seed,
                 out=out,

@@ -16,6 +16,7 @@ from mintpilot.cli.exits import EPILOGUE, ExitCode, fail, guarded, verdict_on
 from mintpilot.cli.exporting import export
 from mintpilot.cli.interrupts import listen
 from mintpilot.cli.logs import log, runs
+from mintpilot.cli.policies import policy
 from mintpilot.cli.simulating import sim
 from mintpilot.cli.understand_answer import answer
 from mintpilot.cli.understand_instruction import instruction
@@ -119,6 +120,7 @@ def run(
     vehicle: str = "mujoco",
     strategy: str = "mint",
     strategy_arg: StrategyArgs = None,
+    planner: str = "grid",
     think: str | None = None,
     seed: Seed = None,
     llm: Llm = None,
@@ -144,6 +146,7 @@ def run(
             mavlink://udpin:127.0.0.1:14540.
         strategy: How it decides what to ask.
         strategy_arg: NAME=VALUE, an argument of the strategy; may be given several times. Overrides that of the file.
+        planner: Who plans: grid; policy (by exact values), policy:FILE.npz (by learned ones); or a plug-in's.
         think: Seconds that the scripted operator takes for an answer, or two bounds: 2..8. Default: as the file says.
         seed: Of everything that is drawn at random; overrides the one in the file.
         llm: Language model for words: template (none), endpoint, embedded, or a plug-in's. Default: as the file says.
@@ -180,6 +183,7 @@ def run(
         vehicle=vehicle,
         strategy=strategy,
         strategy_args=tuple(strategy_arg or ()),
+        planner=planner,
         think=think,
         seed=seed,
         out=out,
@@ -268,6 +272,7 @@ def plan(
     *,
     strategy: str = "mint",
     strategy_arg: StrategyArgs = None,
+    planner: str = "grid",
     seed: Seed = None,
     llm: Llm = None,
     lang: Lang = None,
@@ -282,6 +287,7 @@ def plan(
         mission: The mission file (YAML).
         strategy: How it decides what to ask.
         strategy_arg: NAME=VALUE, an argument of the strategy; may be given several times. Overrides that of the file.
+        planner: Who plans: grid; policy (by exact values), policy:FILE.npz (by learned ones); or a plug-in's.
         seed: Of everything that is drawn at random; overrides the one in the file.
         llm: Language model for words: template (none), endpoint, embedded, or a plug-in's. Default: as the file says.
         lang: Language of the questions: en, de, fr or es. Default: as the file says.
@@ -295,6 +301,7 @@ def plan(
             mission,
             strategy=strategy,
             strategy_args=strategy_arg or (),
+            planner=planner,
             seed=seed,
             llm=llm,
             lang=lang,
@@ -468,6 +475,7 @@ def replay(
 
 app.command(bench)
 app.command(sim)
+app.command(policy)
 app.command(log)
 app.command(runs, help_epilogue=examples("mintpilot runs", "mintpilot runs --prune --keep 20 --yes"))
 app.command(

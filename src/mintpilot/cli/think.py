@@ -17,6 +17,7 @@ def think(
     *,
     strategy: str,
     strategy_args: Iterable[str],
+    planner: str,
     seed: int | None,
     llm: str | None,
     lang: str | None,
@@ -27,7 +28,9 @@ def think(
     from mintpilot.assembly.strategies import parse_arguments
 
     arguments = parse_arguments(strategy_args)
-    report = plan_mission(path, strategy=strategy, strategy_arguments=arguments, seed=seed, llm=llm, lang=lang)
+    report = plan_mission(
+        path, strategy=strategy, strategy_arguments=arguments, planner=planner, seed=seed, llm=llm, lang=lang
+    )
     print(report.model_dump_json() if as_json else "\n".join(lines_of(report)))
     return ExitCode.SUCCESS
 

@@ -16,6 +16,7 @@ from mintpilot.conformance.language_model import check_language_model
 from mintpilot.conformance.operator import check_operator
 from mintpilot.conformance.perception import check_perception
 from mintpilot.conformance.planner import check_metric, check_planner
+from mintpilot.conformance.policy import check_policy
 from mintpilot.conformance.recorder import check_recorder
 from mintpilot.conformance.strategy import check_objective, check_strategy
 from mintpilot.conformance.vehicle import check_vehicle
@@ -29,6 +30,7 @@ __all__ = [
     "check_operator",
     "check_perception",
     "check_planner",
+    "check_policy",
     "check_recorder",
     "check_strategy",
     "check_vehicle",

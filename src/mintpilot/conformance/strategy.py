@@ -13,7 +13,7 @@ from mintpilot.conformance.sample import require, sample_world
 from mintpilot.core.gap import GapKind, KnowledgeGap
 from mintpilot.core.mission import AskingSettings
 from mintpilot.core.ports import Fly, QueryObjective, QuerySituation, Strategy
-from mintpilot.core.query import Answer, Query, Reply, answer_for, is_refused
+from mintpilot.core.query import CHOICE_EFFORT, Answer, Query, Reply, answer_for, is_refused
 from mintpilot.mission.deliberation import Deliberation, DeliberationParts
 from mintpilot.mission.rehearsal import Rehearsal, begin
 
@@ -58,6 +58,7 @@ def check_objective(make: Callable[[], QueryObjective]) -> None:
         np.int8,
     )
     part_count = np.array([2, 2, 2, 2, 2, 3, 3])
+    effort = np.where(part_count > 2, CHOICE_EFFORT, 1.0)
     regret = np.where(class_of[None, :] == np.arange(3)[:, None], 0.0, 20.0)
     situation = QuerySituation(
         probability=probability,
@@ -65,6 +66,7 @@ def check_objective(make: Callable[[], QueryObjective]) -> None:
         regret_s=regret,
         parts=parts,
         part_count=part_count,
+        effort=effort,
         settings=AskingSettings(),
     )
     objective = make()
@@ -87,6 +89,7 @@ def check_objective(make: Callable[[], QueryObjective]) -> None:
         regret_s=np.zeros((1, 2)),
         parts=np.array([[0, 1]], np.int8),
         part_count=np.array([2]),
+        effort=np.ones(1),
         settings=AskingSettings(),
     )
     left = float(make().scores(settled)[0])

@@ -9,7 +9,7 @@ from mintpilot.core.decisions import AskQuestion
 from mintpilot.core.gap import GapKind, KnowledgeGap
 from mintpilot.core.geometry import Floats
 from mintpilot.core.plan import Plan
-from mintpilot.core.query import NO_PART, YES_PART, Answer, Query, Question, Reply
+from mintpilot.core.query import NO_PART, YES_PART, Answer, Query, Question
 from mintpilot.core.tree import GapExplanation, Mint
 
 _MOST_POINTS = 400
@@ -48,7 +48,7 @@ def question_pane(
         spots=tuple(spot for gap in question.gaps for spot in _spots(gap, question.query)),
         why=tuple(e.figures or e.why for gap in question.gaps if (e := explanations.get(gap.id)) is not None),
         worth=_worth(asked),
-        read_back=_said(question.read_back),
+        read_back=_said(question, question.read_back),
         read_back_means=_means(question, question.read_back),
     )
 
@@ -133,15 +133,13 @@ def _worth(asked: AskQuestion | None) -> Worth | None:
     )
 
 
-def _said(answer: Answer | None) -> str:
+def _said(question: Question, answer: Answer | None) -> str:
     if answer is None:
         return ""
+    if answer.option is not None and not answer.also:
+        return question.query.part_words(answer.option)
     return answer.text if answer.also else answer.reply.value
 
 
 def _means(question: Question, answer: Answer | None) -> str:
-    if answer is None:
-        return ""
-    if answer.reply is Reply.OPTION and answer.option is not None:
-        return question.option_means[answer.option] if answer.option < len(question.option_means) else ""
-    return question.yes_means if answer.reply is Reply.YES else question.no_means
+    return "" if answer is None or answer.part is None else question.means(answer.part)

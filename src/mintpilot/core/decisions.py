@@ -7,7 +7,7 @@ from typing import TypeAlias
 
 from mintpilot.core.gap import Belief, KnowledgeGap
 from mintpilot.core.geometry import Bools, Vec3, frozen
-from mintpilot.core.plan import Plan, Prospect, Stop
+from mintpilot.core.plan import LeftUndone, Plan, Prospect, Stop
 from mintpilot.core.query import Question
 from mintpilot.core.semantic_map import Knowledge
 from mintpilot.core.trajectory import Trajectory
@@ -65,6 +65,8 @@ class FlyPlan:
     certificate: Certificate
     unsafe: bool = False
     """True only for baselines that fly through what is not known passable; refused outside a simulator."""
+    left: tuple[LeftUndone, ...] = ()
+    """All stops with what runs short for each, where nothing is flown."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -72,6 +74,8 @@ class NoPlan:
     """Nothing can be flown, whatever the answers are."""
 
     reason: str
+    left: tuple[LeftUndone, ...] = ()
+    """All stops with what runs short for each."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

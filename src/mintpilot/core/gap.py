@@ -12,6 +12,7 @@ import numpy as np
 from mintpilot.core.errors import MissionError
 from mintpilot.core.geometry import Floats, Vec3, frozen
 from mintpilot.core.observation import Attribute
+from mintpilot.core.threshold import Threshold
 from mintpilot.core.tolerances import SUM_TOLERANCE
 
 PASSABLE = "passable"
@@ -22,6 +23,10 @@ NONE_OF_THEM = "none of them"
 NOT_YET_SEEN = "not yet seen"
 NOWHERE = (NONE_OF_THEM, NOT_YET_SEEN)
 """Values of a target gap that are no candidates: the phrase means nothing that was seen, or it is in no picture yet."""
+NOT_HERE = "not here"
+"""Value of a gap that asks in which zone of unseen space something is: in none of them."""
+NO_THING = (*NOWHERE, NOT_HERE)
+"""Values of a target gap that name no candidate."""
 FLY = "fly"
 STAY = "stay"
 
@@ -32,7 +37,8 @@ class GapKind(StrEnum):
     OBSTACLE = "obstacle"
     """Is this region passable? Values: `PASSABLE`, `BLOCKED`."""
     TARGET = "target"
-    """Which object does this phrase mean? Values: ids of the candidates; where names are in doubt, `NOWHERE` too."""
+    """Which object does this phrase mean? Values: ids of the candidates; where names are in doubt, `NOWHERE` too.
+    Of something that was not seen: in which zone of unseen space is it? Values: ids of the zones, and `NOT_HERE`."""
     PRESENCE = "presence"
     """Is somebody in this place? Values: `PRESENT`, `ABSENT`."""
     VALUE = "value"
@@ -110,6 +116,8 @@ class KnowledgeGap:
     """For a target gap: one per value that is a thing, in the same order."""
     is_thing: bool = False
     """For a presence gap: its subject is a thing that may be somebody, not a place that may hold somebody."""
+    threshold: Threshold | None = None
+    """For an obstacle gap: it is passable exactly where an ordered value is at least this."""
 
     def __post_init__(self) -> None:
         if not self.values or len(set(self.values)) != len(self.values):
@@ -118,7 +126,7 @@ class KnowledgeGap:
             raise MissionError(f"gap '{self.id}': {len(self.prior)} probabilities for {len(self.values)} values")
         if any(not 0 <= p <= 1 for p in self.prior) or not math.isclose(sum(self.prior), 1, abs_tol=SUM_TOLERANCE):
             raise MissionError(f"gap '{self.id}': prior {self.prior} must be from 0 to 1 each and sum to 1")
-        things = tuple(v for v in self.values if v not in NOWHERE)
+        things = tuple(v for v in self.values if v not in NO_THING)
         if self.candidates and tuple(c.id for c in self.candidates) != things:
             raise MissionError(f"gap '{self.id}': the candidates' ids must be its values, in order")
 
@@ -133,7 +141,12 @@ class KnowledgeGap:
     @property
     def in_doubt(self) -> bool:
         """Whether a phrase may mean none of its candidates."""
-        return any(v in NOWHERE for v in self.values)
+        return any(v in NO_THING for v in self.values)
+
+    @property
+    def is_search(self) -> bool:
+        """Whether it asks in which zone of unseen space something is (method, section 9)."""
+        return NOT_HERE in self.values
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -10,7 +10,7 @@ from typing import Any
 from mintpilot.core.errors import MissionError
 from mintpilot.core.geometry import Box, Vec3
 from mintpilot.core.georeference import Georeference
-from mintpilot.core.plan import LeftUndone, VehicleLimits
+from mintpilot.core.plan import LeftUndone, Look, VehicleLimits
 
 
 class CriticalityRule(StrEnum):
@@ -29,6 +29,15 @@ class WhileWaiting(StrEnum):
     """It hovers."""
     MOVE = "move"
     """It flies on through known free space, to where the answer will cost least."""
+
+
+class QueryKinds(StrEnum):
+    """Which kinds of query may be put (method, section 13)."""
+
+    YES_NO = "yes-no"
+    """Only what is answered by yes or no."""
+    ANY = "any"
+    """Choices among up to four named options, too."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -123,6 +132,11 @@ class AskingSettings:
     reply_s: float = setting(
         10.0, "Seconds that a yes or no is expected to take: what the battery may lose meanwhile is weighed.", least=0
     )
+    kinds: QueryKinds = setting(  # noqa: RUF009  (a field, with its words)
+        QueryKinds.YES_NO,
+        "Which kinds of question are put: those answered by yes or no (`yes-no`), or choices among up to four named "
+        "options as well (`any`), which count 1.6 times as long as a yes or no.",
+    )
     while_waiting: WhileWaiting = setting(  # noqa: RUF009  (a field, with its words)
         WhileWaiting.MOVE,
         "What the drone does while a question is open: hover (`hold`), or fly on through known free space to where the "
@@ -134,7 +148,7 @@ class AskingSettings:
     objective: str = setting("information-gain", "Name of the query objective.")
     max_nodes: int = setting(4096, "Bound on the tree's nodes.", least=1)
     max_joint: int = setting(65536, "Bound on the joint hypotheses held.", least=1)
-    impact_metric: str = setting("frechet", "Name of the distance between paths.")
+    impact_metric: str = setting("frechet", "Name of the metric between paths; `q-value:FILE`: by a policy.")
 
     def __post_init__(self) -> None:
         for one in fields(self):
@@ -207,6 +221,8 @@ class Mission:
     """Where the map lies on the earth; None: not known."""
     people_price_s: float | None = None
     """What leaving somebody unseen costs, seconds of flight; None: ``asking.failure_price_s``."""
+    looks: tuple[Look, ...] = ()
+    """From where gaps can be settled by looking."""
     returns: ReturnRule = ReturnRule.NONE
     """Whether the drone flies back to the start once its task is done."""
 

@@ -90,10 +90,31 @@ class Stop:
     """What is done there, as a short sentence without a full stop."""
     chance: float = 1.0
     """Probability that an optional stop is needed, as believed when the problem was framed."""
+    informs: bool = False
+    """True where it is done to know more: what follows is decided after it."""
 
     def __post_init__(self) -> None:
         if not 0 <= self.price_s < math.inf:
             raise MissionError(f"stop '{self.id}': price_s = {self.price_s}: must be finite and not below 0")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Look:
+    """A place from which a gap can be settled by looking (method, section 11)."""
+
+    gap: str
+    """Id of the gap."""
+    viewpoint_m: Vec3
+    dwell_s: float = 2.0
+    """How long the drone stays there, seconds."""
+    sees: float = 1.0
+    """Probability that the look settles the gap; else it tells nothing."""
+
+    def __post_init__(self) -> None:
+        if not 0 < self.sees <= 1:
+            raise MissionError(f"look at '{self.gap}': sees = {self.sees}: must be above 0 and at most 1")
+        if not 0 <= self.dwell_s < math.inf:
+            raise MissionError(f"look at '{self.gap}': dwell_s = {self.dwell_s}: must be finite and not below 0")
 
 
 class Shortage(StrEnum):

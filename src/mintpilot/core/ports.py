@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Protocol, TypeAlias
+from typing import Protocol, TypeAlias, runtime_checkable
 
 from mintpilot.core.events import Event
 from mintpilot.core.gap import Assumptions, Belief, KnowledgeGap
@@ -17,7 +17,8 @@ from mintpilot.core.inputs import OperatorInput, VehicleInput
 from mintpilot.core.mission import AskingSettings, Verdict
 from mintpilot.core.motion import Motion
 from mintpilot.core.observation import Detection, Frame, NameGuess, RawFrame, Segment
-from mintpilot.core.plan import Plan, PlanningProblem
+from mintpilot.core.plan import Look, Plan, PlanningProblem
+from mintpilot.core.policy import PolicyState
 from mintpilot.core.query import Evidence, Query, Question, Reply
 from mintpilot.core.reading import AnsweredBy, Reading
 from mintpilot.core.trajectory import VehicleState
@@ -149,6 +150,47 @@ class ImpactMetric(Protocol):
         ...
 
 
+@runtime_checkable
+class PlanMetric(ImpactMetric, Protocol):
+    """An impact metric that also judges plans: it then says what a gap costs, in place of the plans' own costs."""
+
+    def on(self, problem: PlanningProblem) -> PlanMetric:
+        """The same metric for the plans of that problem. Called before `loss_s`, whenever the problem has changed."""
+        ...
+
+    def loss_s(self, best: Plan, sure: Plan, given: Assumptions) -> float:
+        """Seconds of flight lost by following ``sure`` where all that ``given`` leaves open turns out well.
+
+        Args:
+            best: the best plan if it does; the loss is measured against it.
+            sure: the plan that is followed, to its end.
+            given: what is assumed besides.
+
+        Returns:
+            The loss; infinite where ``sure`` is not known to arrive. Exact values give the difference of the costs.
+
+        Raises:
+            InputError: what it judges by cannot be used for this problem.
+        """
+        ...
+
+
+class Policy(Protocol):
+    """Values the actions of a drone on a grid, learned or computed (method, section 15)."""
+
+    def q_values(self, state: PolicyState) -> Floats:
+        """Value of each action of `mintpilot.core.policy.steps`, shape (actions,): the best is taken.
+
+        The unit is the edge of a cell: an exact value is minus the length of the move and of the shortest way on from
+        where it ends, 0 at the goal; minus infinity where there is none. Values of actions that `PolicyTask.allowed`
+        rules out do not count. Equal states give equal values.
+
+        Raises:
+            InputError: the policy was made for another grid, or its numbers are no values.
+        """
+        ...
+
+
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class QuerySituation:
     """What a query objective may look at. Joint hypotheses are flattened; those with no probability are left out."""
@@ -164,6 +206,9 @@ class QuerySituation:
     """(q, n) the part of each candidate query that holds each joint hypothesis: the true answer."""
     part_count: Ints
     """(q,) the number of parts of each query, 2 to `mintpilot.core.query.MAX_PARTS`."""
+    effort: Floats
+    """(q,) how many times as long as a yes or no the answer to each query takes (`mintpilot.core.query.Query.effort`);
+    the worth of a query counts for the operator's time."""
     settings: AskingSettings
 
 
@@ -193,6 +238,17 @@ class Proposer(Protocol):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class LookOption:
+    """A look that may be taken from here."""
+
+    look: Look
+    seconds: float
+    """What it costs beside the plan: the flight there, the stay, and what the rest is dearer from there."""
+    plan: Plan
+    """The flight there and the stay."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Situation:
     """What a strategy decides on."""
 
@@ -214,6 +270,8 @@ class Situation:
     objective: QueryObjective
     proposer: Proposer | None = None
     """Whom a strategy may ask for queries that it does not find by itself; None: nobody."""
+    looks: tuple[LookOption, ...] = ()
+    """Looks that compete with queries (method, section 11)."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -431,8 +489,10 @@ __all__ = [
     "Namer",
     "Operator",
     "Perception",
+    "PlanMetric",
     "PlanSpace",
     "Planner",
+    "Policy",
     "Proposer",
     "QueryObjective",
     "QuerySituation",

@@ -6,6 +6,7 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from itertools import combinations
+from types import MappingProxyType
 
 import numpy as np
 
@@ -31,6 +32,8 @@ NONE_OF_THESE = "none of these"
 """What the part of a choice is called that no option covers."""
 MAX_PARTS = 4
 """A query divides the joint hypotheses into no more parts than this."""
+CHOICE_EFFORT = 1.6
+"""How many times as long as a yes or no the answer to a choice takes (method, section 13)."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -72,6 +75,11 @@ class Query:
     def part_count(self) -> int:
         """How many parts it has, 2 to `MAX_PARTS`."""
         return len(self.options) + self.none_of_these if self.options else 2
+
+    @property
+    def effort(self) -> float:
+        """How many times as long as a yes or no its answer takes: 1, or `CHOICE_EFFORT`."""
+        return CHOICE_EFFORT if self.options else 1.0
 
     @property
     def id(self) -> str:
@@ -233,6 +241,11 @@ class Question:
     read_back: Answer | None = None
     """What was understood and takes effect only if it is confirmed now; None: the question itself is asked."""
 
+    def means(self, part: int) -> str:
+        """The consequence of the answer that names that part; empty where none was worded."""
+        means = self.option_means if self.query.is_choice else (self.yes_means, self.no_means)
+        return means[part] if part < len(means) else ""
+
 
 class Reply(StrEnum):
     """What came back. Silence is a reply."""
@@ -284,6 +297,10 @@ class Standing(StrEnum):
     """A plain yes to what was read back."""
 
 
+PARTS = MappingProxyType({Reply.YES: YES_PART, Reply.NO: NO_PART})
+"""The parts of a yes/no query by reply."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Answer:
     """An operator's reaction to one question [y]."""
@@ -312,7 +329,7 @@ class Answer:
     @property
     def part(self) -> int | None:
         """The part of the query that the reply names; None for UNSURE and TIMEOUT."""
-        return {Reply.YES: YES_PART, Reply.NO: NO_PART}.get(self.reply, self.option)
+        return PARTS.get(self.reply, self.option)
 
 
 def answer_for(query: Query, part: int, *, latency_s: float = 0.0, text: str = "") -> Answer:
@@ -323,9 +340,11 @@ def answer_for(query: Query, part: int, *, latency_s: float = 0.0, text: str = "
 
 
 __all__ = [
+    "CHOICE_EFFORT",
     "MAX_PARTS",
     "NONE_OF_THESE",
     "NO_PART",
+    "PARTS",
     "YES_PART",
     "Answer",
     "Combine",

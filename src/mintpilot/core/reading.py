@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from mintpilot.core.gap import ABSENT, PASSABLE, GapKind
-from mintpilot.core.query import Literal, Order, Question, Reply, SayingKind
+from mintpilot.core.query import PARTS, Literal, Order, Question, Reply, SayingKind, answer_for
 
 
 class ReadingKind(StrEnum):
@@ -48,7 +48,7 @@ class Reading:
     reply: Reply | None = None
     """For YES, NO and UNSURE the reply; for READ_BACK the reply that must be confirmed."""
     option: int | None = None
-    """For OPTION: its number as shown, from 1."""
+    """For OPTION, and READ_BACK of one: its number as shown, from 1. None: the option that was read back."""
     order: Order | None = None
     """For ORDER."""
     evidence: tuple[tuple[Literal, bool], ...] = ()
@@ -64,7 +64,7 @@ class Reading:
         """The reading as one word for commands and records: ``yes``, ``read-back:no``, ``evidence:colour=red``."""
         detail: object = ""
         if self.kind is ReadingKind.READ_BACK and self.reply is not None:
-            detail = self.reply.value
+            detail = self.reply.value if self.option is None else f"{self.reply.value}:{self.option}"
         elif self.kind is ReadingKind.ORDER and self.order is not None:
             detail = self.order.value
         elif self.kind is ReadingKind.OPTION:
@@ -85,6 +85,8 @@ def guarded_replies(question: Question) -> frozenset[Reply]:
     Calling a region passable, calling a place empty, and any statement about which thing is meant or how large a value
     is may enlarge permissions. The mission state may know better; this errs on the side of guarding.
     """
+    if question.query.is_choice:
+        return frozenset((Reply.OPTION,))
     kinds = {gap.id: gap.kind for gap in question.gaps}
     guarded: set[Reply] = set()
     for literal in question.query.literals:
@@ -109,9 +111,26 @@ def reply_of(reading: Reading, question: Question) -> Reply:
     if reading.kind is not ReadingKind.EVIDENCE:
         is_plain = reading.reply is not None and reading.kind is not ReadingKind.READ_BACK
         return reading.reply if is_plain and reading.reply is not None else Reply.UNSURE
-    values = possible_values(reading, question)
-    answers = {question.query.holds({reading.evidence[0][0].gap: value}) for value in values}
-    return Reply.UNSURE if len(answers) != 1 else Reply.YES if answers.pop() else Reply.NO
+    part = part_said(reading, question)
+    return Reply.UNSURE if part is None else answer_for(question.query, part).reply
+
+
+def part_said(reading: Reading, question: Question) -> int | None:
+    """The part of the query that a reading names, read back or not; None where it names none.
+
+    Of evidence: the one part in which all candidates lie that it leaves.
+    """
+    query, read_back = question.query, question.read_back
+    if reading.kind is ReadingKind.EVIDENCE:
+        values = possible_values(reading, question)
+        parts = {query.part_of({reading.evidence[0][0].gap: value}) for value in values}
+        return parts.pop() if len(parts) == 1 else None
+    is_option = reading.kind is ReadingKind.OPTION or reading.reply is Reply.OPTION
+    if is_option and reading.option is None:
+        return read_back.part if read_back is not None else None
+    if is_option and reading.option is not None:
+        return reading.option - 1 if query.is_choice and 1 <= reading.option <= query.part_count else None
+    return None if query.is_choice or reading.reply is None else PARTS.get(reading.reply)
 
 
 def possible_values(reading: Reading, question: Question) -> tuple[str, ...]:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from mintpilot.core.errors import MapError
 from mintpilot.core.geometry import Box, GridFrame, Ints, Vec3, frozen
 from mintpilot.core.observation import Attribute, NameGuess, RegionKind
+from mintpilot.core.threshold import Threshold
 
 
 class Cell(IntEnum):
@@ -80,6 +81,8 @@ class Region:
     """What the operator can see of it, e.g. ``the grey smoke near the red rack``."""
     best_view: tuple[int, int, int, int, int] | None = None
     """Provenance: frame index and pixel box."""
+    threshold: Threshold | None = None
+    """From which value of an ordered measure on it is passable; None: nothing is measured."""
 
     def __post_init__(self) -> None:
         frozen(self.cells)

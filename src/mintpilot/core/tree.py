@@ -132,6 +132,8 @@ class StopReason(StrEnum):
     """No policy of asking on is worth its questions' price."""
     WAITING = "waiting"
     """Waiting for an answer may lose more than the answer gives: the battery runs meanwhile."""
+    LOOK = "look"
+    """A look tells more a second than any question: what follows is decided after it."""
     NEVER_ASKS = "never-asks"
     """The strategy does not ask."""
     LIMIT = "limit"
@@ -166,6 +168,7 @@ class GapExplanation:
     description: str
     kind: str
     asked: bool
+    """Whether the operator was asked about it."""
     relevant: bool
     """Whether any best plan depends on it."""
     why: str

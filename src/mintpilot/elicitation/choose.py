@@ -32,6 +32,7 @@ def query_situation(queries: Sequence[Query], mint: Mint, regret_s: Floats, sett
         regret_s=regret_s,
         parts=parts,
         part_count=np.array([q.part_count for q in queries], np.int64),
+        effort=np.array([q.effort for q in queries], float),
         settings=settings,
     )
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from mintpilot.core.gap import NOWHERE, Candidate, KnowledgeGap
+from mintpilot.core.gap import NO_THING, Candidate, KnowledgeGap
 from mintpilot.core.geometry import Vec3
 from mintpilot.core.query import Literal, Saying, SayingKind
 
@@ -40,22 +40,27 @@ def name_of(candidate: Candidate) -> str:
 
 def _names(gap: KnowledgeGap) -> Iterator[Literal]:
     for value in gap.values:
-        if value in NOWHERE:
+        if value in NO_THING:
             continue
         yield Literal(gap=gap.id, values=frozenset({value}), saying=Saying(kind=SayingKind.VALUE, value=value))
 
 
-def _attributes(gap: KnowledgeGap) -> Iterator[Literal]:
-    having: dict[tuple[str, str], set[str]] = {}
+def attribute_values(gap: KnowledgeGap) -> dict[str, dict[str, set[str]]]:
+    """The attributes of the candidates by name: each of their values with the candidates that have it."""
+    having: dict[str, dict[str, set[str]]] = {}
     for candidate in gap.candidates:
         for attribute in candidate.attributes:
-            if attribute.value in NOTHING:
-                continue
-            having.setdefault((attribute.name, attribute.value), set()).add(candidate.id)
-    for (name, value), values in sorted(having.items()):
-        if len(values) < len(gap.values):
-            saying = Saying(kind=SayingKind.ATTRIBUTE, name=name, value=value)
-            yield Literal(gap=gap.id, values=frozenset(values), saying=saying)
+            if attribute.value not in NOTHING:
+                having.setdefault(attribute.name, {}).setdefault(attribute.value, set()).add(candidate.id)
+    return having
+
+
+def _attributes(gap: KnowledgeGap) -> Iterator[Literal]:
+    for name, having in sorted(attribute_values(gap).items()):
+        for value, values in sorted(having.items()):
+            if len(values) < len(gap.values):
+                saying = Saying(kind=SayingKind.ATTRIBUTE, name=name, value=value)
+                yield Literal(gap=gap.id, values=frozenset(values), saying=saying)
 
 
 def _relations(gap: KnowledgeGap, start_m: Vec3 | None) -> Iterator[Literal]:

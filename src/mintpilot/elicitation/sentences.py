@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 
 from mintpilot.core.gap import GapKind, KnowledgeGap
 from mintpilot.core.query import Combine, Literal, Query, SayingKind
+from mintpilot.core.threshold import Threshold, ValueKind
 from mintpilot.elicitation.phrases import (
     inset,
     is_adjective,
@@ -22,6 +23,8 @@ from mintpilot.elicitation.phrases import (
 
 MAX_WORDS = 20
 """A question has no more words than this."""
+MAX_CHOICE_WORDS = 40
+"""The same where it names up to four options."""
 
 
 def sentence(query: Query, gaps: Mapping[str, KnowledgeGap], attempt: int = 1) -> str:
@@ -29,27 +32,34 @@ def sentence(query: Query, gaps: Mapping[str, KnowledgeGap], attempt: int = 1) -
 
     Descriptions are shortened only where the sentence would pass `MAX_WORDS`.
     """
+    most = MAX_CHOICE_WORDS if query.is_choice else MAX_WORDS
     for name in (subject_of, lambda gap: shortened(subject_of(gap))):
         text = _sentence(query, gaps, attempt, name)
-        if len(text.split()) <= MAX_WORDS:
+        if len(text.split()) <= most:
             return text
     words = text.rstrip("?").split()
-    return f"{' '.join(words[:MAX_WORDS])}?"
+    return f"{' '.join(words[:most])}?"
 
 
 def is_sayable(query: Query, gaps: Mapping[str, KnowledgeGap]) -> bool:
-    """Whether the query fits into `MAX_WORDS` words and one form, everything called by its full description."""
+    """Whether the query fits into `MAX_WORDS` words and one form, everything called by its full description.
+
+    A choice may have `MAX_CHOICE_WORDS`.
+    """
     owned = {is_possession(x.saying.name) for x in query.every_literal if x.saying.kind is SayingKind.ATTRIBUTE}
     if len(owned) > 1 and not query.is_choice:
         return False
-    return all(len(_sentence(query, gaps, attempt, subject_of).split()) <= MAX_WORDS for attempt in (1, 2))
+    most = MAX_CHOICE_WORDS if query.is_choice else MAX_WORDS
+    return all(len(_sentence(query, gaps, attempt, subject_of).split()) <= most for attempt in (1, 2))
 
 
 def _sentence(query: Query, gaps: Mapping[str, KnowledgeGap], attempt: int, name: Callable[[KnowledgeGap], str]) -> str:
     first = attempt % 2 == 1
     if query.is_choice:
-        offered = joined([query.part_words(part) for part in range(query.part_count)], "or")
-        return f"Which is it: {offered}?" if first else f"Which of these is right: {offered}?"
+        return _choice(query, gaps, first, name)
+    threshold = highest(query, gaps)
+    if threshold is not None:
+        return _threshold(threshold, first)
     subjects = [name(gaps[x.gap]) for x in query.literals]
     kinds = {gaps[x.gap].kind for x in query.literals}
     if kinds == {GapKind.OBSTACLE}:
@@ -67,6 +77,53 @@ def _sentence(query: Query, gaps: Mapping[str, KnowledgeGap], attempt: int, name
     word = "and" if query.combine is Combine.ALL else "or"
     facts = joined([_fact(x, gaps[x.gap], name) for x in query.literals], word)
     return f"Is it true that {facts}?" if first else f"Is this right: {facts}?"
+
+
+def highest(query: Query, gaps: Mapping[str, KnowledgeGap]) -> Threshold | None:
+    """The largest threshold of a query about one ordered value, joined by *and*; None for other queries."""
+    found = [gaps[x.gap].threshold for x in query.literals if x.saying.kind is SayingKind.THRESHOLD]
+    known = [threshold for threshold in found if threshold is not None]
+    if not known or len(known) < len(query.literals) or len({t.of for t in known}) > 1:
+        return None
+    return max(known, key=lambda threshold: threshold.at_least_m)
+
+
+def _threshold(threshold: Threshold, first: bool) -> str:
+    it, how = _measured(threshold)
+    value = threshold.words
+    return f"Is {it} at least {value} {how}?" if first else f"Is it right that {it} is {value} {how} or more?"
+
+
+def _measured(value: Threshold) -> tuple[str, str]:
+    """What is measured, and the adjective that goes with it."""
+    subject = inset(value.subject)
+    if value.kind is ValueKind.CLEARANCE:
+        return subject, "wide"
+    return f"the lower edge of {subject}", "high"
+
+
+def _choice(query: Query, gaps: Mapping[str, KnowledgeGap], first: bool, name: Callable[[KnowledgeGap], str]) -> str:
+    """The options with their numbers, as they stand on screens and are answered by voice."""
+    offered = joined([f"{part + 1} {query.part_words(part)}" for part in range(query.part_count)], "or")
+    kinds = {gaps[x.gap].kind for x in query.every_literal}
+    saying = query.every_literal[0].saying
+    value = gaps[query.every_literal[0].gap].threshold
+    if value is not None:
+        it, how = _measured(value)
+        return f"How {how} is {it}: {offered}?" if first else f"Which is right, how {how} {it} is: {offered}?"
+    if kinds == {GapKind.OBSTACLE}:
+        return f"Which is safe to fly through: {offered}?" if first else f"What can the drone fly through: {offered}?"
+    if kinds == {GapKind.PRESENCE}:
+        if all(gaps[x.gap].is_thing for x in query.every_literal):
+            return f"Which is a person: {offered}?" if first else f"Which of these is somebody: {offered}?"
+        return f"Where is somebody inside: {offered}?" if first else f"Which of these holds a person: {offered}?"
+    if kinds == {GapKind.VALUE}:
+        it = inset(name(gaps[query.gap_ids[0]]))
+        return f"How much is {it}: {offered}?" if first else f"Which is right for {it}: {offered}?"
+    if saying.kind is SayingKind.ATTRIBUTE:
+        what = plain(saying.name)
+        return f"What is its {what}: {offered}?" if first else f"Which {what} has the one you mean: {offered}?"
+    return f"Which one do you mean: {offered}?" if first else f"Which of these is it: {offered}?"
 
 
 def _obstacles(subjects: list[str], combine: Combine, first: bool) -> str:
@@ -105,6 +162,8 @@ def _referent(query: Query, gap: KnowledgeGap, first: bool) -> str:
     word = "and" if query.combine is Combine.ALL else "or"
     if kinds == {SayingKind.VALUE}:
         things = joined([thing_called(gap, x.saying.value) for x in query.literals], word)
+        if gap.is_search:
+            return f"Is {gap.subject} in {things}?" if first else f"Is this where {gap.subject} is: {things}?"
         return f"Is it {things}?" if first else f"Do you mean {things}?"
     if kinds == {SayingKind.RELATION} and len(query.literals) == 1:
         saying = query.literals[0].saying

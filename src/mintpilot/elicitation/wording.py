@@ -6,10 +6,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from mintpilot.core.gap import NOWHERE, PASSABLE, GapKind, KnowledgeGap
+from mintpilot.core.gap import NO_THING, PASSABLE, GapKind, KnowledgeGap
 from mintpilot.core.geometry import Bools
 from mintpilot.core.plan import Plan
 from mintpilot.core.query import NO_PART, YES_PART, Query, Question
+from mintpilot.core.threshold import ValueKind
 from mintpilot.core.tolerances import TOLERANCE
 from mintpilot.core.tree import Mint
 from mintpilot.elicitation.phrases import joined, subject_of, thing_called
@@ -19,6 +20,8 @@ MOST_NAMED = 2
 """So many candidates that are left are named; more are counted."""
 NOT_SEEN = "I take it that it was not seen"
 """What follows when a phrase means none of the things that were seen."""
+NO_FURTHER = "I look no further for it"
+"""What follows when what is sought is in none of the zones that were not seen."""
 
 
 def word_question(query: Query, gaps: Sequence[KnowledgeGap], mint: Mint | None, *, attempt: int = 1) -> Question:
@@ -93,9 +96,9 @@ def _left(query: Query, about: tuple[KnowledgeGap, ...], part: int, mint: Mint) 
     gap = about[0]
     chances = mint.belief.marginal(gap.id)
     left = [v for v, p in zip(gap.values, chances, strict=True) if p > 0 and query.part_of({gap.id: v}) == part]
-    things = [value for value in left if value not in NOWHERE]
+    things = [value for value in left if value not in NO_THING]
     if left and not things:
-        return NOT_SEEN
+        return NO_FURTHER if gap.is_search else NOT_SEEN
     if len(things) == 1 and len(left) > 1:
         return f"I ask further: {thing_called(gap, things[0])}"
     left = things
@@ -115,7 +118,7 @@ def _likeliest(mint: Mint, agrees: Bools) -> tuple[Plan | None, bool]:
 
 
 def _flight(plan: Plan | None, sure: bool, about: tuple[KnowledgeGap, ...], left: str) -> str:
-    if left == NOT_SEEN:
+    if left in (NOT_SEEN, NO_FURTHER):
         return left
     if plan is None:
         return "I find no safe way" if sure else "I may find no safe way"
@@ -123,6 +126,10 @@ def _flight(plan: Plan | None, sure: bool, about: tuple[KnowledgeGap, ...], left
     kinds = {g.kind for g in about}
     if kinds == {GapKind.OBSTACLE}:
         entered = [g for g in about if g.id in plan.enters]
+        value = about[0].threshold
+        if value is not None and {g.threshold.of if g.threshold else "" for g in about} == {value.of}:
+            through = "through" if value.kind is ValueKind.CLEARANCE else "under"
+            return f"{i} fly {through if entered else 'around'} it"
         if not entered:
             return f"{i} fly around {'it' if len(about) == 1 else 'them'}"
         return f"{i} fly through {'it' if len(about) == 1 else joined([subject_of(g) for g in entered], 'and')}"

@@ -2,8 +2,21 @@
 
 from __future__ import annotations
 
-from mintpilot.core.query import NO_PART, YES_PART, Answer, Evidence, Query, Question, Reply, Standing
-from mintpilot.core.reading import AnsweredBy, Reading, ReadingKind, reply_of
+from dataclasses import replace
+
+from mintpilot.core.query import (
+    NO_PART,
+    PARTS,
+    YES_PART,
+    Answer,
+    Evidence,
+    Query,
+    Question,
+    Reply,
+    Standing,
+    answer_for,
+)
+from mintpilot.core.reading import AnsweredBy, Reading, ReadingKind, part_said
 
 
 def answer_of(
@@ -23,22 +36,25 @@ def answer_of(
         latency_s: from when it was shown, seconds.
         by: how the words came.
     """
-    kind = reading.kind
-    plain = kind in (ReadingKind.YES, ReadingKind.NO, ReadingKind.UNSURE)
-    if kind is ReadingKind.EVIDENCE and question is not None:
-        reply = reply_of(reading, question)
-    else:
-        reply = reading.reply if reading.reply is not None else Reply.UNSURE
+    part = part_said(reading, question) if question is not None else PARTS.get(reading.reply or Reply.UNSURE)
+    plain = reading.kind in (ReadingKind.YES, ReadingKind.NO, ReadingKind.UNSURE, ReadingKind.OPTION)
     standing = Standing.PLAIN if plain else Standing.UNCONFIRMED
     read_back = question.read_back if question is not None else None
-    if plain and read_back is not None and read_back.reply is reply:
+    if plain and read_back is not None and part is not None and read_back.part == part:
         standing = Standing.CONFIRMED
     also = tuple(
         Evidence(query=Query(literals=(literal,)), part=YES_PART if holds else NO_PART)
         for literal, holds in reading.evidence
     )
-    return Answer(
-        reply=reply,
+    said = Answer(reply=Reply.UNSURE, latency_s=latency_s)
+    if part is not None:
+        said = (
+            answer_for(question.query, part)
+            if question is not None
+            else replace(said, reply=reading.reply or Reply.UNSURE)
+        )
+    return replace(
+        said,
         latency_s=latency_s,
         text=text,
         also=also,

@@ -31,6 +31,8 @@ class ScreenWords:
     """Stands above better words that came later."""
     repeat: str
     """Answers words that were not understood; says what may be said."""
+    repeat_choice: str
+    """The same where options were offered."""
     given_up: str
     """The same the second time."""
     read_back: str
@@ -58,6 +60,7 @@ WORDS: Mapping[str, ScreenWords] = MappingProxyType(
             better="The same in other words:",
             repeat="I do not understand. Please say yes, no or don't know (y, n, ?), what is the case, or an order: "
             "hold, return, abort.",
+            repeat_choice="I do not understand. Please give the number of an option, don't know (?), or an order.",
             given_up="I do not understand: I take it as 'don't know'.",
             read_back="I understood {}: {}. Is that right? Yes or no: ",
             nothing_asked="Nothing is asked now. Orders: hold, continue, return, land, abort.",
@@ -78,6 +81,7 @@ WORDS: Mapping[str, ScreenWords] = MappingProxyType(
             better="Dasselbe in anderen Worten:",
             repeat="Das habe ich nicht verstanden. Bitte: ja, nein, weiß nicht (?), oder ein Befehl: halt, zurück, "
             "abbrechen.",
+            repeat_choice="Das habe ich nicht verstanden. Bitte eine der Nummern, weiß nicht (?), oder ein Befehl.",
             given_up="Das habe ich nicht verstanden: es gilt als „weiß nicht“.",
             read_back="Ich habe verstanden: {}, {}. Stimmt das? Ja oder nein: ",
             nothing_asked="Gerade wird nichts gefragt. Befehle: halt, weiter, zurück, landen, abbrechen.",
@@ -97,6 +101,7 @@ WORDS: Mapping[str, ScreenWords] = MappingProxyType(
             prompt="Votre réponse : ",
             better="La même chose en d'autres mots :",
             repeat="Je n'ai pas compris. Dites : oui, non, je ne sais pas (?), ou un ordre : stop, reviens, annule.",
+            repeat_choice="Je n'ai pas compris. Dites le numéro d'un choix, je ne sais pas (?), ou un ordre.",
             given_up="Je n'ai pas compris : cela compte comme « je ne sais pas ».",
             read_back="J'ai compris : {}, {}. C'est juste ? Oui ou non : ",
             nothing_asked="Rien n'est demandé. Ordres : stop, continue, reviens, atterris, annule.",
@@ -115,6 +120,7 @@ WORDS: Mapping[str, ScreenWords] = MappingProxyType(
             prompt="Su respuesta: ",
             better="Lo mismo con otras palabras:",
             repeat="No he entendido. Diga: sí, no, no sé (?), o una orden: alto, vuelve, cancela.",
+            repeat_choice="No he entendido. Diga el número de una opción, no sé (?), o una orden.",
             given_up="No he entendido: cuenta como «no sé».",
             read_back="He entendido: {}, {}. ¿Es correcto? Sí o no: ",
             nothing_asked="No se pregunta nada ahora. Órdenes: alto, sigue, vuelve, aterriza, cancela.",

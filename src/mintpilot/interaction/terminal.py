@@ -17,7 +17,7 @@ from rich.text import Text
 from mintpilot.core.errors import DeviceError
 from mintpilot.core.inputs import Answered, MoreTimeWanted, OperatorInput, Ordered, QuestionShown
 from mintpilot.core.ports import Operator, Understand
-from mintpilot.core.query import Answer, Order, Question, Reply, Standing
+from mintpilot.core.query import NO_PART, YES_PART, Answer, Order, Question, Reply, Standing
 from mintpilot.core.reading import AnsweredBy, Reading, ReadingKind
 from mintpilot.interaction.answers import answer_of
 from mintpilot.interaction.keyboard import Keyboard, Typed
@@ -133,7 +133,9 @@ class TerminalOperator(Operator):
                 said = Text(self._words.better, style="bold cyan")
                 self._console.print(Group(Text(), said, *self._question_lines(question)))
         else:
-            self._keyboard.begin(self._words.letters)
+            query = question.query
+            numbers = "1234"[: query.part_count] if query.is_choice else ""
+            self._keyboard.begin(self._words.letters + numbers)
             self._turn = _Turn(question, patience_s)
             self._show(question, patience_s)
         self._prompt()
@@ -234,7 +236,8 @@ class TerminalOperator(Operator):
         turn.question = replace(turn.question, read_back=None)
         if not turn.asked_again:
             turn.asked_again = True
-            self._console.print(Text(self._words.repeat, style="yellow"))
+            words = self._words.repeat_choice if turn.question.query.is_choice else self._words.repeat
+            self._console.print(Text(words, style="yellow"))
             self._prompt()
             return []
         self._console.print(Text(self._words.given_up, style="yellow"))
@@ -256,9 +259,12 @@ class TerminalOperator(Operator):
         return self._understand(typed.text, turn.question, left_s, by=by, pending=pending)
 
     def _read_back(self, question: Question, answer: Answer) -> str:
-        means = question.yes_means if answer.reply is Reply.YES else question.no_means
-        said = self._words.yes if answer.reply is Reply.YES else self._words.no
-        return self._words.read_back.format(said.split()[-1], _printable(means))
+        part = answer.part if answer.part is not None else NO_PART
+        if question.query.is_choice:
+            said = answer.text if answer.also else question.query.part_words(part)
+        else:
+            said = (self._words.yes if part == YES_PART else self._words.no).split()[-1]
+        return self._words.read_back.format(_printable(said), _printable(question.means(part)))
 
     def _told_back(self, kind: ReadingKind, question: Question) -> tuple[Text, ...]:
         """What is said to a question back."""
@@ -336,8 +342,20 @@ class TerminalOperator(Operator):
         self._drawn = None
 
     def _question_lines(self, question: Question) -> tuple[Text, ...]:
-        """The words with what Yes and what No do to the flight."""
+        """The words with what each answer does to the flight."""
         words = self._words
+        if question.query.is_choice:
+            return (
+                Text(_printable(question.text), style="bold"),
+                *(
+                    Text.assemble(
+                        (f"  {part + 1}  {_printable(question.query.part_words(part)):<{_KEYS - 3}}", "cyan"),
+                        "→ ",
+                        _printable(means),
+                    )
+                    for part, means in enumerate(question.option_means)
+                ),
+            )
         return (
             Text(_printable(question.text), style="bold"),
             Text.assemble((f"  {words.yes:<{_KEYS}}", "green"), "→ ", _printable(question.yes_means)),

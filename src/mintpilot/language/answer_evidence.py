@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator
 
 from mintpilot.core.gap import GapKind, KnowledgeGap
-from mintpilot.core.query import Literal, Question, Saying, SayingKind
+from mintpilot.core.query import YES_PART, Literal, Question, Saying, SayingKind
 from mintpilot.language.answer_text import folded, listed, spoken, utterance, without_courtesies
 from mintpilot.language.answer_words import ANSWER_WORDS
 from mintpilot.language.tongues import TONGUES
@@ -40,8 +40,10 @@ def evidence_in(text: str, question: Question, lang: str, *, is_voice: bool) -> 
             return ()
         found += said_here
     left = [v for v in gaps[0].values if all((v in literal.values) == holds for literal, holds in found)]
-    answers = {question.query.holds({gaps[0].id: value}) for value in left}
-    if not found or not left or (lead is not None and lead not in answers):
+    if not found or not left or (lead is not None and question.query.is_choice):
+        return ()
+    answers = {question.query.part_of({gaps[0].id: value}) == YES_PART for value in left}
+    if lead is not None and lead not in answers:
         return ()
     adds = lead is not None and len(answers) > 1 and len(question.query.literals) == 1
     return ((question.query.literals[0], bool(lead)), *found) if adds else tuple(found)

@@ -46,6 +46,7 @@ def read_with_model(
     """
     reading = read_answer(text, question, guarded=guarded, lang=lang, by=by, pending=pending)
     is_final = reading.kind is not ReadingKind.AGAIN or pending is not None or by is AnsweredBy.KEY
+    is_final |= question.query.is_choice  # it is asked for yes and no only
     if is_final or not text.strip() or len(text) > LONGEST:
         return reading
     open_replies = [reply for reply in (Reply.YES, Reply.NO) if not vetoes(text, lang, reply)]

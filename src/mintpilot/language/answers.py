@@ -14,10 +14,12 @@ from functools import cache
 
 from mintpilot.core.errors import UnknownNameError
 from mintpilot.core.gap import ABSENT, BLOCKED, PASSABLE, PRESENT, GapKind
-from mintpilot.core.query import Order, Question, Reply
+from mintpilot.core.query import MAX_PARTS, Order, Question, Reply
 from mintpilot.core.reading import AnsweredBy, Reading, ReadingKind, opposite, plain_reply
 from mintpilot.language.answer_evidence import evidence_in
+from mintpilot.language.answer_options import option_in
 from mintpilot.language.answer_text import LONGEST, listed, loose, spoken, utterance, vetoes, without_courtesies, words
+from mintpilot.language.answer_values import threshold_of, value_answer
 from mintpilot.language.answer_words import ANSWER_WORDS, AnswerWords
 
 _KEYS = {"y": Reply.YES, "yes": Reply.YES, "n": Reply.NO, "no": Reply.NO, "u": Reply.UNSURE, "unsure": Reply.UNSURE,
@@ -109,8 +111,12 @@ def _by_key(heard: _Heard, pending: Reply | None) -> Reading:
         reply = _KEYS[key]
         if pending is not None and reply in (Reply.YES, Reply.NO):
             return plain_reply(pending, by="key") if reply is Reply.YES else _denied(heard, pending, by="key")
+        if heard.question.query.is_choice and reply in (Reply.YES, Reply.NO):
+            return Reading(kind=ReadingKind.AGAIN, by="key")
         return plain_reply(reply, by="key")
-    if key in ("1", "2", "3", "4") and pending is None:
+    query = heard.question.query
+    most = query.part_count if query.is_choice else MAX_PARTS
+    if key in map(str, range(1, most + 1)) and pending is None:
         return Reading(kind=ReadingKind.OPTION, option=int(key), by="key")
     return Reading(kind=ReadingKind.AGAIN, by="key")
 
@@ -148,16 +154,31 @@ def _denied(heard: _Heard, pending: Reply, *, by: str = "rules") -> Reading:
 
 
 def _answer(heard: _Heard) -> Reading:
+    length = value_answer(heard.text, heard.question)
+    if length is not None:
+        return length
     evidence = evidence_in(heard.text, heard.question, heard.lang, is_voice=heard.by is AnsweredBy.VOICE)
     if evidence:
         return Reading(kind=ReadingKind.EVIDENCE, evidence=evidence)
     if heard.text.strip() == "?":
         return plain_reply(Reply.UNSURE)
+    if heard.question.query.is_choice:
+        return _to_choice(heard)
     reading = _listed_reply(heard) or _cautious(heard) or _read_back(heard)
     if reading is not None:
         return reading
     found = dict.fromkeys(v for reply in heard.guarded for v in vetoes(heard.text, heard.lang, reply))
     return replace(_AGAIN, vetoes=tuple(found))
+
+
+def _to_choice(heard: _Heard) -> Reading:
+    """An option of a choice, or that the person does not know; a yes or no is neither."""
+    option = option_in(heard.text, heard.question, heard.lang)
+    if option is not None:
+        return option
+    if not _asks(heard) and words(loose(heard.known.unsure)).search(loose(heard.text)):
+        return plain_reply(Reply.UNSURE)
+    return replace(_AGAIN, vetoes=vetoes(heard.text, heard.lang, Reply.YES))
 
 
 def _listed_reply(heard: _Heard) -> Reading | None:
@@ -242,6 +263,8 @@ def _reply_if(value: str, question: Question) -> Reply | None:
     kind = GapKind.OBSTACLE if value in (PASSABLE, BLOCKED) else GapKind.PRESENCE
     if any(g.kind is not kind for g in question.gaps) or {g.id for g in question.gaps} != set(question.query.gap_ids):
         return None
+    if value == PASSABLE and threshold_of(question) is not None:
+        return None  # "it is safe" says nothing of how wide or how high it is
     if len(question.gaps) > 1 and value in (PASSABLE, ABSENT):
         return None  # of several regions or rooms, "it is safe" does not say which
     return Reply.YES if question.query.holds({gap.id: value for gap in question.gaps}) else Reply.NO

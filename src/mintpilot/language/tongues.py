@@ -35,6 +35,8 @@ class Tongue:
     """Kind of cut → statement, for cuts of several parts."""
     joined: tuple[str, str, str]
     """Frame of a question of several parts, and, or."""
+    choice: tuple[str, str, str]
+    """Frame of a choice, or, none of these."""
     outcomes: Mapping[str, str]
     """English consequence → the same; ``{}`` stands for what is called by name."""
     probably: str
@@ -70,6 +72,7 @@ GERMAN = Tongue(
         PASSABLE: "{} ist sicher", PRESENT: "jemand ist hier drin: {}", VALUE: "es ist {}", ATTRIBUTE: "es ist {}",
     },
     joined=("Stimmt das: {}?", "und", "oder"),
+    choice=("Welches ist gemeint: {}?", "oder", "keins davon"),
     outcomes={
         "fly through it": "ich fliege hindurch", "fly around it": "ich fliege außen herum",
         "fly through them": "ich fliege hindurch", "fly around them": "ich fliege außen herum",
@@ -114,6 +117,7 @@ FRENCH = Tongue(
         ATTRIBUTE: "il est {}",
     },
     joined=("Est-ce exact : {} ?", "et", "ou"),
+    choice=("Lequel est-ce : {} ?", "ou", "aucun d'eux"),
     outcomes={
         "fly through it": "je passe à travers", "fly around it": "je fais le tour",
         "fly through them": "je passe à travers", "fly around them": "je fais le tour",
@@ -156,6 +160,7 @@ SPANISH = Tongue(
     },
     states={PASSABLE: "{} es seguro", PRESENT: "hay alguien aquí dentro: {}", VALUE: "es {}", ATTRIBUTE: "es {}"},
     joined=("¿Es cierto: {}?", "y", "o"),
+    choice=("¿Cuál es: {}?", "o", "ninguno de ellos"),
     outcomes={
         "fly through it": "lo atravieso", "fly around it": "lo rodeo", "fly through them": "los atravieso",
         "fly around them": "los rodeo", "look inside": "miro dentro", "fly past it": "paso de largo",

@@ -82,6 +82,7 @@ class TranslatedWording:
             text=text or english.text,
             yes_means=consequence(english.yes_means, self.tongue),
             no_means=consequence(english.no_means, self.tongue),
+            option_means=tuple(consequence(means, self.tongue) for means in english.option_means),
             worded_by=f"template-{self.tongue.name}" if text else english.worded_by,
         )
 
@@ -119,9 +120,11 @@ def consequence(english: str, tongue: Tongue) -> str:
 
 
 def _ask(query: Query, gaps: Mapping[str, KnowledgeGap], tongue: Tongue) -> str:
+    if query.is_choice:
+        return _choose(query, gaps, tongue)
     kinds = [_kind(x, gaps[x.gap]) for x in query.literals]
     subjects = [_subject(x, gaps[x.gap], tongue) for x in query.literals]
-    if query.is_choice or not all(kinds) or not all(subjects):
+    if not all(kinds) or not all(subjects):
         return ""
     if len(kinds) == 1:
         return tongue.asks[kinds[0]].format(subjects[0])
@@ -131,9 +134,23 @@ def _ask(query: Query, gaps: Mapping[str, KnowledgeGap], tongue: Tongue) -> str:
     return frame.format(f" {word} ".join(facts))
 
 
+def _choose(query: Query, gaps: Mapping[str, KnowledgeGap], tongue: Tongue) -> str:
+    """Which of several things is meant, or which of their attributes; other choices have no sentence here."""
+    if any(
+        len(option.literals) > 1 or gaps[option.literals[0].gap].kind is not GapKind.TARGET for option in query.options
+    ):
+        return ""
+    named = [_subject(option.literals[0], gaps[option.literals[0].gap], tongue) for option in query.options]
+    if not all(named):
+        return ""
+    frame, last, none = tongue.choice
+    numbered = [f"{n} {words}" for n, words in enumerate([*named, *([none] if query.none_of_these else [])], 1)]
+    return frame.format(f"{', '.join(numbered[:-1])} {last} {numbered[-1]}")
+
+
 def _kind(literal: Literal, gap: KnowledgeGap) -> str:
     """Which sentence says it; empty where none does."""
-    if gap.kind is GapKind.OBSTACLE:
+    if gap.kind is GapKind.OBSTACLE and gap.threshold is None:
         return PASSABLE if literal.values == {PASSABLE} else ""
     if gap.kind is GapKind.PRESENCE:
         return PRESENT if literal.values == {PRESENT} and not gap.is_thing else ""

@@ -93,7 +93,9 @@ class ModelWording:
         threading.Thread(target=read, daemon=True, name="mintpilot warming").start()
 
     def improve(self, question: Question) -> Question:
-        """The question in the model's words, if nothing speaks against them; else as it was."""
+        """The question in the model's words, if nothing speaks against them; choices and values stay as they were."""
+        if question.query.is_choice or any(gap.threshold is not None for gap in question.gaps):
+            return question
         try:
             prompt = _PROMPT.format(question=question.text)
             completion = self.model.complete(prompt, schema=None, timeout_s=self.timeout_s)

@@ -12,6 +12,7 @@ from mintpilot.core.geometry import Bools, Box, GridFrame
 from mintpilot.core.observation import Detection, Frame, RegionKind
 from mintpilot.core.plan import VehicleLimits
 from mintpilot.core.semantic_map import Cell, Knowledge, Region, SemanticMap
+from mintpilot.mapping.body_parts import with_parts_counted
 from mintpilot.mapping.corridors import off_corridor
 from mintpilot.mapping.fusion import FusionInput, fused_objects, fused_regions, fused_rooms
 from mintpilot.mapping.glow import Glow
@@ -143,7 +144,7 @@ class MapBuilder:
             previous=known,
             hull_m=self._limits.clearance_m,
         )
-        objects = fused_objects(self._tracks.all, given)
+        objects = with_parts_counted(fused_objects(self._tracks.all, given))
         flames = [thing.box_m for thing in objects if thing.label == "fire"]
         blazing = self._blazing(flames)
         evidence = SmokeEvidence(solid=self._solid, free=cells == Cell.FREE, blazing=blazing)

@@ -9,14 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mintpilot.core.geometry import Box, GridFrame, Vec3
-from mintpilot.core.observation import OBJECT, RegionKind
+from mintpilot.core.observation import OBJECT, Attribute, NameGuess, RegionKind
 from mintpilot.core.semantic_map import Cell, Knowledge, MapObject, Region, Room, SemanticMap
 from mintpilot.mapping.identity import Names, match
 from mintpilot.mapping.objects import Track, closeness, same_body
 from mintpilot.mapping.rooms import same_door, viewpoint_of
 from mintpilot.mapping.settings import MappingSettings
 from mintpilot.mapping.smoke import Cloud, cells_in
-from mintpilot.mapping.wording import describe_all
+from mintpilot.mapping.wording import describe_all, place_in
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -39,16 +39,21 @@ def fused_objects(tracks: Sequence[Track], given: FusionInput) -> tuple[MapObjec
     """Objects seen often or surely enough, doors left out; ids from the previous map by nearness."""
     settings = given.settings
     kept = [
-        t for t in tracks if (t.label != "door" or t.is_segment) and _credible(t, settings) and not _roofed(t, given)
+        t
+        for t in tracks
+        if (t.label != "door" or t.is_segment)
+        and (_credible(t, settings) or _glimpsed(t, settings))
+        and not _roofed(t, given)
     ]
-    people = [t for t in kept if t.label == "person"]
+    people = [t for t in kept if t.label == "person" and not _glimpsed(t, settings)]
     fires = [t for t in kept if t.label == "fire"]
     kept = [t for t in kept if not any(_limb_of(t, p) for p in people) and not any(_foot_of(t, f) for f in fires)]
     old = given.previous.objects if given.previous is not None else ()
     pairs = match([[_nearness(t, o) for o in old] for t in kept])
     for thing in old:
         given.names.seen(thing.id)
-    objects = [t.as_object(old[pairs[i]].id if i in pairs else given.names.new(t.label)) for i, t in enumerate(kept)]
+    named = [(t, old[pairs[i]].id if i in pairs else given.names.new(t.label)) for i, t in enumerate(kept)]
+    objects = [_doubted(t, name, given) if _glimpsed(t, settings) else t.as_object(name) for t, name in named]
     backed = set(pairs.values())
     objects += [o for j, o in enumerate(old) if j not in backed and not _gone(o, tracks, given)]
     return tuple(sorted(objects, key=lambda o: _order(o.id)))
@@ -145,6 +150,18 @@ def _colour(track: Track) -> str:
 def _credible(track: Track, settings: MappingSettings) -> bool:
     """Seen twice, or surely once; a danger counts as soon as it is seen."""
     return len(track.frames) >= 2 or track.score >= settings.sure_score or track.label == "fire"
+
+
+def _glimpsed(track: Track, settings: MappingSettings) -> bool:
+    """Whether it may be somebody who was seen once, and not surely: to be asked about or looked at again."""
+    return track.label == "person" and not track.is_segment and not _credible(track, settings)
+
+
+def _doubted(track: Track, name: str, given: FusionInput) -> MapObject:
+    """Somebody glimpsed: a thing at that place, which is a person as surely as it was seen."""
+    thing = track.as_object(name)
+    where = Attribute(name="place", value=place_in(given.volume, thing.position_m))
+    return replace(thing, attributes=(where,), names=(NameGuess(label="person", probability=track.score),))
 
 
 def _limb_of(track: Track, person: Track) -> bool:

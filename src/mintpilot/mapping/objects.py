@@ -11,6 +11,9 @@ from mintpilot.core.geometry import Box, Floats, Vec3
 from mintpilot.core.observation import OBJECT, Attribute, Detection, NameGuess
 from mintpilot.core.semantic_map import MapObject
 
+SILENT = 0.3
+"""Weight of a sighting in which nobody had a name for a thing: it may be cut off, or seen from behind."""
+
 
 @dataclass(slots=True)
 class Track:
@@ -84,7 +87,7 @@ class Track:
         if self.is_segment:
             for guess in detection.names:
                 self.claims[guess.label] += weight * guess.probability  # type: ignore[assignment]
-            self.claimed += weight
+            self.claimed += weight if detection.names else SILENT * weight
             best = self.names[0] if self.claims else None
             self.label = best.label if best is not None and best.probability >= NAMED else OBJECT
         if self.best_view is None or pixels * weight > self._best_pixels:

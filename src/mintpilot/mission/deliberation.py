@@ -12,12 +12,13 @@ from mintpilot.core.errors import InfeasibleError
 from mintpilot.core.gap import PASSABLE, Assumptions, Belief, CorrelationGroup, GapKind, KnowledgeGap
 from mintpilot.core.geometry import Vec3
 from mintpilot.core.mission import AskingSettings, Mission, ReturnRule, WhileWaiting
-from mintpilot.core.plan import Prospect
+from mintpilot.core.plan import LeftUndone, PlanningProblem, Prospect
 from mintpilot.core.ports import (
     Ask,
     Decision,
     Fly,
     ImpactMetric,
+    PlanMetric,
     Planner,
     Proposer,
     QueryObjective,
@@ -32,7 +33,10 @@ from mintpilot.elicitation.wording import word_question
 from mintpilot.mapping.knowledge import apply_knowledge
 from mintpilot.mission.belief_state import BeliefState, remaining_budget
 from mintpilot.mission.explanations import explanations
+from mintpilot.mission.looking import look_options
+from mintpilot.mission.nothing_done import nothing_done, sentence
 from mintpilot.mission.rule_progress import ruling
+from mintpilot.mission.unseen import SEARCH, with_search
 from mintpilot.reasoning.belief import extend
 from mintpilot.reasoning.waiting import longest_wait_s, spare_s
 from mintpilot.strategies.flying import cautious_plan
@@ -80,6 +84,8 @@ class Deliberation:
     findings: Findings
     situation: Situation
     decision: Decision
+    left: tuple[LeftUndone, ...] = ()
+    """All stops, where nothing is flown."""
 
     @property
     def left_out(self) -> tuple[str, ...]:
@@ -156,7 +162,13 @@ def decision_of(found: Deliberation, parts: DeliberationParts, explained: frozen
         left_out=found.left_out,
     )
     if isinstance(choice, Fly):
-        return FlyPlan(reasoning=reasoning, plan=choice.plan, certificate=choice.certificate, unsafe=choice.unsafe)
+        return FlyPlan(
+            reasoning=reasoning,
+            plan=choice.plan,
+            certificate=choice.certificate,
+            unsafe=choice.unsafe,
+            left=found.left,
+        )
     query = choice.scored.query
     spoken_of = tuple(g for g in situation.belief.gaps if g.id in query.gap_ids)
     attempt = found.state.attempts.count(query.id) + 1
@@ -224,13 +236,24 @@ def mission_decision(
     try:
         found = deliberate(state, parts, start_m=start_m, endurance_s=endurance_s)
     except InfeasibleError as error:
-        return NoPlan(reason=str(error))
+        return NoPlan(reason=str(error), left=_all_left(state, parts, start_m=start_m, endurance_s=endurance_s))
     return decision_of(found, parts, explained)
 
 
-def _deliberate(
+def _all_left(
+    state: BeliefState, parts: DeliberationParts, *, start_m: Vec3, endurance_s: float
+) -> tuple[LeftUndone, ...]:
+    try:
+        framed = _framed(state, parts, start_m=start_m, endurance_s=endurance_s, honour_wishes=False)
+    except InfeasibleError:  # what is sought was not seen: there is no stop
+        return ()
+    return nothing_done(framed[2], parts.planner)
+
+
+def _framed(
     state: BeliefState, parts: DeliberationParts, *, start_m: Vec3, endurance_s: float, honour_wishes: bool
-) -> Deliberation:
+) -> tuple[BeliefState, Findings, PlanningProblem]:
+    """What is to be planned, with what the answers have settled in the map."""
     findings, belief = _gaps_of(state, parts, start_m, honour_wishes)
     known = apply_knowledge(state.map, belief, state.confirmed, parts.settings)
     if known is not state.map:
@@ -253,20 +276,39 @@ def _deliberate(
         home_m=mission.start_m if mission.returns is ReturnRule.REQUIRED else None,
         ruling=ruling(parts.task, state.progress, state.map, findings.stops),
     )
+    return state, findings, problem
+
+
+def _deliberate(
+    state: BeliefState, parts: DeliberationParts, *, start_m: Vec3, endurance_s: float, honour_wishes: bool
+) -> Deliberation:
+    state, findings, problem = _framed(
+        state, parts, start_m=start_m, endurance_s=endurance_s, honour_wishes=honour_wishes
+    )
+    belief, mission = state.belief, parts.mission
+    space = parts.planner.open(problem)
     situation = Situation(
         problem=problem,
-        space=parts.planner.open(problem),
+        space=space,
+        looks=look_options(problem, space, parts.planner, mission.looks, state.finished) if mission.looks else (),
         belief=belief,
         confirmed=state.confirmed,
         withdrawn=state.withdrawn,
         asked=state.asked,
         silent=state.silent,
         settings=remaining_budget(parts.settings, state),
-        metric=parts.metric,
+        metric=parts.metric.on(problem) if isinstance(parts.metric, PlanMetric) else parts.metric,
         objective=parts.objective,
         proposer=parts.proposer,
     )
-    return Deliberation(state=state, findings=findings, situation=situation, decision=parts.strategy.decide(situation))
+    decision = parts.strategy.decide(situation)
+    left: tuple[LeftUndone, ...] = ()
+    if isinstance(decision, Fly) and decision.plan is None:
+        left = nothing_done(problem, parts.planner)
+        certificate = decision.certificate
+        text = f"{certificate.text} {sentence(left)}".strip()
+        decision = replace(decision, certificate=replace(certificate, text=text))
+    return Deliberation(state=state, findings=findings, situation=situation, decision=decision, left=left)
 
 
 def _gaps_of(
@@ -280,7 +322,12 @@ def _gaps_of(
         finished=state.finished,
         honour_wishes=honour_wishes,
     )
-    return findings, extend(state.belief, findings.gaps, parts.groups, max_joint=parts.settings.max_joint)
+    belief, mission = state.belief, parts.mission
+    if findings.sought and mission.survey is not None:
+        findings = with_search(findings, state.map, mission.limits, start_m, state.finished)
+        if all(SEARCH not in one.query.gap_ids for one in state.asked):
+            belief = Belief(factors=tuple(f for f in belief.factors if SEARCH not in {g.id for g in f.gaps}))
+    return findings, extend(belief, findings.gaps, parts.groups, max_joint=parts.settings.max_joint)
 
 
 def _wishes(state: BeliefState, parts: DeliberationParts, start_m: Vec3) -> bool:

@@ -9,13 +9,15 @@ import numpy as np
 from mintpilot.core.decisions import FlyPlan, FlyTrajectory, GoBack, RefuseFlight
 from mintpilot.core.inputs import Link, MapObserved
 from mintpilot.core.mission import Achieved, Outcome, ReturnRule
-from mintpilot.core.plan import Leg, Plan, Stop
+from mintpilot.core.plan import LeftUndone, Leg, Plan, Stop
 from mintpilot.core.task import Action
 from mintpilot.mission.outlasting import outlasted
 from mintpilot.mission.requests import Purpose
 from mintpilot.mission.rule_progress import done
 from mintpilot.mission.state import Activity, Ending, Goal, uncertain_things
+from mintpilot.mission.surveying import SWEEP_RAD, turn
 from mintpilot.mission.transition import Transition, partial_reason
+from mintpilot.mission.unseen import is_search
 
 MAX_REPLANS = 8
 """How often news in flight may send the drone back to deliberating before it goes home."""
@@ -60,9 +62,16 @@ def _done(t: Transition) -> Ending:
 def chosen(t: Transition, decision: FlyPlan) -> None:
     """The asking is over: flies the plan, or goes home where there is none that may be flown."""
     if decision.plan is None:
+        nothing(t, decision.left)
         t.give_up(decision.certificate.text)
     else:
         fly_plan(t, decision.plan, unsafe=decision.unsafe)
+
+
+def nothing(t: Transition, left: tuple[LeftUndone, ...]) -> None:
+    """Nothing of these stops can be flown: they are kept with the reasons, beside what was wanted before."""
+    wanted = {stop.id: stop for stop in (*t.state.wanted, *(one.stop for one in left))}
+    t.set(plan=None, undone=left, wanted=tuple(wanted.values()))
 
 
 def fly_leg(t: Transition, decision: FlyTrajectory) -> None:
@@ -101,7 +110,11 @@ def plan_again(t: Transition) -> None:
 
 def arrived(t: Transition) -> None:
     """At the stop: does what it is for."""
-    t.act(_leg(t).stop)
+    stop, vehicle = _leg(t).stop, t.state.vehicle
+    if is_search(stop):
+        t.follow(turn(np.asarray(vehicle.position_m), vehicle.yaw_rad, SWEEP_RAD), Activity.ACT)
+    else:
+        t.act(stop)
 
 
 def fulfilled(t: Transition) -> None:
@@ -111,7 +124,11 @@ def fulfilled(t: Transition) -> None:
         beliefs = replace(beliefs, map=beliefs.map.with_room(leg.site.label, searched=True))
     t.set(beliefs=beliefs, leg=t.state.leg + 1)
     mark_done(t, leg.stop)
-    next_leg(t)
+    if leg.stop.informs:
+        t.set(plan=None)
+        t.request(Purpose.MISSION)
+    else:
+        next_leg(t)
 
 
 def mark_done(t: Transition, stop: Stop) -> None:

@@ -24,6 +24,7 @@ from mintpilot.core.ports import Recorder
 from mintpilot.core.query import Answer, Reply
 from mintpilot.core.task import Action
 from mintpilot.mission.directives import BeginTask, Directive, Move, Note, Tell, WithdrawQuestion
+from mintpilot.mission.looking import looked_at
 from mintpilot.mission.requests import Purpose
 from mintpilot.mission.state import Activity, MissionState, OpenQuestion
 from mintpilot.reasoning.explain import decided
@@ -121,10 +122,11 @@ class Journal:
         self._round += 1
         if isinstance(decision, FlyPlan):
             explained = sorted(after.explanations, key=lambda e: e.gap_id)
+            looked = looked_at(after.beliefs.finished) if after.beliefs else frozenset[str]()
             yield PlanChosen(
                 plan=decision.plan,
                 certificate=decision.certificate,
-                explanations=tuple(decided(e, e.gap_id in after.asked_gaps) for e in explained),
+                explanations=tuple(decided(e, e.gap_id in after.asked_gaps, e.gap_id in looked) for e in explained),
             )
 
     def _flown(self, before: MissionState, event: MotionEnded) -> Iterator[Event]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
+from dataclasses import replace
 
 from mintpilot.core.events import MissionEnded
 from mintpilot.core.inputs import Input, MissionBegun
@@ -55,6 +56,8 @@ def fly_mission(components: MissionComponents) -> Verdict:
                         pass  # the journal keeps them
         verdict = shell.verdict(state)
     finally:
+        if not state.ended and state.grounded:
+            verdict = replace(verdict, reason="The mission was broken off; the drone stands on the ground.")
         shell.close()
         components.recorder.record(MissionEnded(verdict=verdict))
     return verdict

@@ -35,7 +35,7 @@ def permissions(state: BeliefState, settings: AskingSettings) -> Permissions:
         may_be_absent = gap.kind is GapKind.PRESENCE and ABSENT in gap.values
         if may_be_absent and belief.probability_of(gap.id, ABSENT) >= 1 - settings.alpha:
             leave_out.add(gap.id)
-        if gap.kind is GapKind.TARGET and len(gap.values) > 1:
+        if gap.kind is GapKind.TARGET and len(gap.values) > 1 and not gap.is_search:
             p = belief.marginal(gap.id)
             if float(p.max()) >= 1 - settings.alpha and gap.values[int(np.argmax(p))] not in NOWHERE:
                 pick.add((gap.id, gap.values[int(np.argmax(p))]))

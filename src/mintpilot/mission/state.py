@@ -11,7 +11,7 @@ from mintpilot.core.briefing import Briefing
 from mintpilot.core.geometry import Floats
 from mintpilot.core.inputs import Link
 from mintpilot.core.mission import Achieved, Mission, Outcome, Verdict, Waiting
-from mintpilot.core.plan import Plan, Prospect, Stop
+from mintpilot.core.plan import LeftUndone, Plan, Prospect, Stop
 from mintpilot.core.query import Answer, Query, Question
 from mintpilot.core.semantic_map import SemanticMap
 from mintpilot.core.task import Task
@@ -187,6 +187,8 @@ class MissionState:
     plan: Plan | None = None
     wanted: tuple[Stop, ...] = ()
     """Stops of the plan that was set out on last, those among them that it leaves undone included."""
+    undone: tuple[LeftUndone, ...] = ()
+    """Stops of which nothing could be flown when it was thought about last."""
     achieved: tuple[Achieved, ...] = ()
     """What was done, in order."""
     leg: int = 0

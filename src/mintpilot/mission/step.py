@@ -159,7 +159,7 @@ def _observed(t: Transition, event: MapObserved) -> None:
         known = frozenset(obstacle_id(r.id) for r in event.map.regions if r.passable is Knowledge.YES)
         t.set(beliefs=BeliefState(map=event.map, belief=prior_belief(())), known_passable=known)
     else:
-        t.set(beliefs=replace(beliefs, map=event.map))
+        t.set(beliefs=replace(beliefs, map=event.map), known_passable=t.state.known_passable | _seen_passable(t, event))
         asking.check_permissions(t)
     match t.state.activity:
         case Activity.FIRST_LOOK:
@@ -186,6 +186,17 @@ def _follow_rules(t: Transition, way_m: Floats) -> None:
     if task is not None and task.rules and t.state.beliefs is not None and t.state.task_begun_s is not None:
         after = flown(task, t.beliefs.progress, t.beliefs.map, limits, way_m)
         t.set(beliefs=replace(t.beliefs, progress=after))
+
+
+def _seen_passable(t: Transition, event: MapObserved) -> frozenset[str]:
+    """The obstacle gap that was just looked at, where its region was open and is seen to be passable."""
+    plan, regions = t.state.plan, {obstacle_id(r.id): r.passable for r in event.map.regions}
+    if t.state.activity is not Activity.ACTED or plan is None:
+        return frozenset()
+    stop = plan.legs[t.state.leg].stop
+    was = {obstacle_id(r.id): r.passable for r in t.beliefs.map.regions}.get(stop.gap)
+    seen = stop.informs and was is Knowledge.OPEN and regions.get(stop.gap) is Knowledge.YES
+    return frozenset({stop.gap}) if seen else frozenset()
 
 
 def _motion_ended(t: Transition, event: MotionEnded) -> None:
@@ -260,6 +271,7 @@ def _deliberated(t: Transition, event: DeliberationEnded) -> None:
             meanwhile.count(t, decision)
             flying.chosen(t, decision)
         case NoPlan():
+            flying.nothing(t, decision.left)
             t.give_up(decision.reason)
         case FlyTrajectory():
             if t.state.goal is Goal.HOLD:

@@ -180,7 +180,8 @@ class Transition:
         """What is to be done still, as far as a plan has named it, and why it is not."""
         state = self.state
         finished = state.beliefs.finished if state.beliefs is not None else frozenset[str]()
-        why = {one.stop.id: left_of(one) for one in state.plan.leaves_undone} if state.plan is not None else {}
+        undone = state.undone if state.plan is None else state.plan.leaves_undone
+        why = {one.stop.id: left_of(one) for one in undone}
         ended = "the mission ended before it"
         return tuple(
             why.get(stop.id) or Left(n=stop.step, text=stop.text or stop.id, reason=ended, resource="ended")

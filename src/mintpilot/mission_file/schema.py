@@ -24,7 +24,7 @@ from mintpilot.mission_file.schema_base import (
     ThinkWords,
     Words,
 )
-from mintpilot.mission_file.schema_world import World
+from mintpilot.mission_file.schema_world import ValueSpec, World
 
 SCHEMA_VERSION = 1
 
@@ -168,6 +168,19 @@ class RuleSpec(Spec):
     """A rule in LTLf: `! & | -> G F U R` over the propositions. A rule may also be given as this text alone."""
 
 
+class LookSpec(Spec):
+    """A place from which it can be seen whether a region is passable. What a look tells is as good as an answer."""
+
+    at: Name
+    """Id of the region."""
+    viewpoint_m: Place
+    """From where."""
+    dwell_s: Duration = 2.0
+    """How long the drone stays there, seconds."""
+    sees: Annotated[float, Field(gt=0, le=1)] = 1.0
+    """Probability that the look settles it; else it tells nothing, and is not tried again."""
+
+
 class CombinationSpec(Spec):
     """One combination of values with its probability."""
 
@@ -230,6 +243,9 @@ class MissionFile(Spec):
     """Distances to be kept from people, things or regions, besides those that the instruction names."""
     rules: Several[Annotated[RuleSpec, BeforeValidator(_as_rule)]] = ()
     """What every flight keeps from take-off to its end. Hard: where a rule cannot be kept, stops are left undone."""
+    looks: Several[LookSpec] = ()
+    """From where regions can be looked at: a look competes with questions by what it tells a second
+    (`asking.reply_s`). On given maps and with the kinematic simulator; a camera sees by itself."""
     people_price_s: NotNegative | None = None
     """What leaving somebody unseen costs, seconds of flight; default: `asking.failure_price_s`."""
     vehicle: VehicleSpec = VehicleSpec()
@@ -244,6 +260,8 @@ class MissionFile(Spec):
     """The flight that makes the map; not for worlds given as a map."""
     priors: PriorsSpec = PriorsSpec()
     """For regions and rooms that name none."""
+    values: Several[ValueSpec] = ()
+    """Ordered values of regions of a given map: how wide a passage is, how high smoke hangs."""
     correlations: Several[CorrelationSpec] = ()
     """Gaps whose priors do not multiply."""
     operator: OperatorSpec = OperatorSpec()

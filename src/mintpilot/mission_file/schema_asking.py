@@ -9,7 +9,7 @@ from typing import Annotated, Any, Literal, get_type_hints
 from pydantic import Field, create_model
 
 from mintpilot.core.mission import AskingSettings, Bounds
-from mintpilot.mission_file.schema_base import Name, Spec
+from mintpilot.mission_file.schema_base import PartName, Spec
 
 
 def asking_spec() -> Any:
@@ -24,12 +24,12 @@ def asking_spec() -> Any:
 
 
 def _written(kind: Any) -> Any:
-    """How a value of that type is written in a mission file: choices by their words, names as `Name`."""
+    """How a value of that type is written in a mission file: choices by their words, names as `PartName`."""
     if not isinstance(kind, type):
         return kind  # a number that may be left out
     if issubclass(kind, StrEnum):
         return Literal[tuple(choice.value for choice in kind)]
-    return Name if kind is str else kind
+    return PartName if kind is str else kind
 
 
 def _default(value: object) -> object:

@@ -47,6 +47,10 @@ Metres: TypeAlias = Annotated[float, Field(ge=0, le=1e3)]
 NotNegative: TypeAlias = Annotated[float, Field(ge=0)]
 Name: TypeAlias = Annotated[str, Field(min_length=1, max_length=100, pattern=r"^[A-Za-z0-9][A-Za-z0-9_.-]*$")]
 """Letters, digits, ``-``, ``_`` and ``.``: safe in file names, reports and answers."""
+PartName: TypeAlias = Annotated[
+    str, Field(min_length=1, max_length=300, pattern=r"^[A-Za-z0-9][A-Za-z0-9_.-]*(:[^:]+)?$")
+]
+"""A registered name, perhaps with what it goes by after a colon: ``q-value:mine.npz``."""
 ThinkWords: TypeAlias = Annotated[str, Field(pattern=r"^\d+(\.\d+)?(\.\.\d+(\.\d+)?)?$")]
 """``5``, or ``2..8``: a time, or two bounds between which it is drawn evenly, seconds."""
 Words: TypeAlias = Annotated[str, Field(min_length=1, max_length=1000)]

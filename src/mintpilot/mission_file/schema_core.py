@@ -4,12 +4,21 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from typing import Any
 
 from mintpilot.core.errors import MissionError
-from mintpilot.core.gap import CorrelationGroup
+from mintpilot.core.gap import CorrelationGroup, obstacle_id
 from mintpilot.core.geometry import Box, Vec3
-from mintpilot.core.mission import AskingSettings, CriticalityRule, Mission, ReturnRule, SurveySettings, WhileWaiting
-from mintpilot.core.plan import VehicleLimits
+from mintpilot.core.mission import (
+    AskingSettings,
+    CriticalityRule,
+    Mission,
+    QueryKinds,
+    ReturnRule,
+    SurveySettings,
+    WhileWaiting,
+)
+from mintpilot.core.plan import Look, VehicleLimits
 from mintpilot.core.task import Action, Reference, SubGoal, Task
 from mintpilot.mission_file.geodetic_places import georeference_of
 from mintpilot.mission_file.schema import GoalSpec, MissionFile
@@ -38,6 +47,15 @@ def mission_of(file: MissionFile, *, start_m: Vec3, volume: Box) -> Mission:
         survey=None if isinstance(file.world, MapWorld) else SurveySettings(**survey),
         prior_passable=file.priors.passable,
         prior_occupied=file.priors.occupied,
+        looks=tuple(
+            Look(
+                gap=obstacle_id(look.at),
+                viewpoint_m=place_of(look.viewpoint_m, start_m[2]),
+                dwell_s=look.dwell_s,
+                sees=look.sees,
+            )
+            for look in file.looks
+        ),
         people_price_s=file.people_price_s,
         returns=ReturnRule(file.vehicle.returns),
         georeference=None if file.world.georeference is None else georeference_of(file.world.georeference),
@@ -55,9 +73,8 @@ def limits_of(file: MissionFile) -> VehicleLimits:
 def asking_of(file: MissionFile) -> AskingSettings:
     """Thresholds and bounds."""
     values = file.asking.model_dump(exclude={"strategy_arguments"})
-    return AskingSettings(
-        **{**values, "rule": CriticalityRule(values["rule"]), "while_waiting": WhileWaiting(values["while_waiting"])}
-    )
+    kinds: dict[str, Any] = {"rule": CriticalityRule, "while_waiting": WhileWaiting, "kinds": QueryKinds}
+    return AskingSettings(**{name: kinds[name](value) if name in kinds else value for name, value in values.items()})
 
 
 def correlations_of(file: MissionFile) -> tuple[CorrelationGroup, ...]:

@@ -10,9 +10,11 @@ from mintpilot.mission_file.schema_base import (
     Attributes,
     BoxSpec,
     Name,
+    NotNegative,
     Place,
     Point2,
     Point3,
+    Positive,
     Probability,
     Several,
     Spec,
@@ -95,6 +97,33 @@ class RegionSpec(Spec):
     """A known fact: true or false. Without it the region is a knowledge gap."""
     truth: Passability | None = None
     """What a scripted operator knows; never used to plan."""
+
+
+class NormalSpec(Spec):
+    """A normal distribution, cut off at the ends of the range."""
+
+    mean: NotNegative
+    """Metres."""
+    sigma: Positive
+    """Standard deviation, metres."""
+
+
+class ValueSpec(Spec):
+    """An ordered value of a region that decides where it can be flown through."""
+
+    id: Name
+    """Unique name, e.g. `gap-width`."""
+    of: Name
+    """Id of the region that is measured. That region gives no fact, prior or truth of its own."""
+    what: Literal["clearance_m", "ceiling_m"]
+    """`clearance_m`: how wide the passage is. `ceiling_m`: how high the lower edge of the smoke is above the map's
+    zero, so that it may be flown under."""
+    range: Point2
+    """Least and largest value that are possible, metres."""
+    prior: Annotated[Several[Point2], Field(min_length=1)] | NormalSpec
+    """What is believed of it: `[[value, probability], ...]`, or `{mean: 1.2, sigma: 0.2}`; metres."""
+    truth: NotNegative | None = None
+    """What a scripted operator knows, metres; never used to plan."""
 
 
 class RoomSpec(Spec):

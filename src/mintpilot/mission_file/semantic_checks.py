@@ -16,6 +16,7 @@ from mintpilot.mission_file.schema_world import MapWorld, SceneWorld, SeenWorld
 from mintpilot.mission_file.semantic_checks_map import map_faults
 from mintpilot.mission_file.semantic_checks_scene import scene_faults
 from mintpilot.mission_file.semantic_checks_seen import seen_faults
+from mintpilot.mission_file.values import value_faults
 from mintpilot.mission_file.yaml_places import Fault, Path_
 
 _VALUES = {GapKind.OBSTACLE: (PASSABLE, BLOCKED), GapKind.PRESENCE: (PRESENT, ABSENT)}
@@ -27,6 +28,8 @@ def contradictions(mission: MissionFile, base: Path) -> Iterator[Fault]:
     yield from _truth_faults(mission)
     yield from _correlation_faults(mission)
     yield from rule_faults(mission)
+    yield from value_faults(mission)
+    yield from _look_faults(mission)
     if isinstance(mission.world, MapWorld | SeenWorld) and mission.survey is not None:
         yield _fault(("survey",), "a given map needs no survey flight; remove 'survey'")
     if isinstance(mission.world, MapWorld):
@@ -104,6 +107,21 @@ def _truth_faults(mission: MissionFile) -> Iterator[Fault]:
         own = getattr(thing, "truth", None)
         if own is not None and own != value:
             yield _fault(path, f"'{value}' contradicts the truth '{own}' given at '{subject}' itself; keep one of them")
+
+
+def _look_faults(mission: MissionFile) -> Iterator[Fault]:
+    """Looks at what is no region, or at one twice; the regions of a drawn or seen world are not known here."""
+    known = None
+    if isinstance(mission.world, MapWorld):
+        known = [region.id for region in mission.world.regions]
+    elif isinstance(mission.world, SceneWorld):
+        known = [smoke.id for smoke in mission.world.scene.smokes]
+    names = [look.at for look in mission.looks]
+    for index, name in enumerate(names):
+        if known is not None and name not in known and name.rpartition("-")[0] not in known:
+            yield _fault(("looks", index, "at"), f"there is no region '{name}'; {nearest(name, known)}")
+        if name in names[:index]:
+            yield _fault(("looks", index, "at"), f"'{name}' is looked at twice; keep one of the looks")
 
 
 def _correlation_faults(mission: MissionFile) -> Iterator[Fault]:

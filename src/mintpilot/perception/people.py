@@ -33,7 +33,7 @@ HEAD_M, HEAD_WIDTH_M = 0.2, (0.1, 0.34)
 """Height of a head above the shoulders, and its width."""
 SHOULDERS = 1.15
 """Shoulders are wider than the head by at least this factor."""
-HEADLESS = 0.2
+HEADLESS = 0.35
 """Probability of what has a body's size and curves, but no head in view."""
 REACHES_M = 0.5
 """Somebody upright is seen down to this height above what they are on, unless the picture ends before."""

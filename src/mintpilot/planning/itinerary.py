@@ -85,7 +85,7 @@ class Itinerary:
         cruise = self.problem.limits.cruise_mps
         done = {stop.id for stop in stops}
         looked_at = done | {one.stop.id for one in left}
-        presence = {g.id for g in self.problem.gaps if g.kind is GapKind.PRESENCE and len(g.values) > 1}
+        presence = {g.id for g in self.problem.gaps if len(g.values) > 1} & {s.gap for s in self.optional}
         legs: list[Leg] = []
         for number, way in zip(route.order, route.paths, strict=True):
             stop = stops[number]

@@ -55,6 +55,8 @@ class JointSearch:
         effort: bounds on the work of one search.
     """
 
+    reversible = True
+
     def __init__(self, free: Bools, regions: Sequence[Ints], effort: Effort | None = None) -> None:
         self.grid = GridSearch(free)
         self.regions = tuple(self.grid.lattice.nodes_of_flat(np.asarray(r, np.int64)) for r in regions)

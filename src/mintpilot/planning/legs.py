@@ -17,6 +17,8 @@ class PathSearch(Protocol):
     """Finds all paths between two cells that are best under some set of blocked regions."""
 
     searches: int
+    reversible: bool
+    """Whether a way back is as good as the way there."""
 
     def between(self, start: ArrayLike, goal: ArrayLike) -> DecisionList[Ints]:
         """Decision list with costs in edges and paths as cells (n, 3)."""
@@ -26,8 +28,8 @@ class PathSearch(Protocol):
 class LegTable:
     """Decision lists between places.
 
-    A way back is the way there, reversed: each pair is searched once, always from its lower cell, so that the result
-    does not depend on which direction was asked for first.
+    A way back is the way there, reversed, where the search says so: each pair is then searched once, always from its
+    lower cell, so that the result does not depend on which direction was asked for first.
     """
 
     def __init__(self, search: PathSearch) -> None:
@@ -38,7 +40,7 @@ class LegTable:
         """All paths from one place to the other."""
         key = (start, goal)
         if key not in self._lists:
-            if goal < start:
+            if goal < start and self.search.reversible:
                 self._lists[key] = _reversed(self.between(goal, start))
             else:
                 self._lists[key] = self.search.between(start, goal)

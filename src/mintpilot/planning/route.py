@@ -58,6 +58,7 @@ def best_route(
     cheapest ones to each state; of those all are kept that differ in the uncertain regions entered.
     """
     rest = range(tour.ordered, len(tour.places))
+    ways: dict[tuple[Cell3, Cell3], list[ParetoPath[Ints]]] = {}
     layer: dict[tuple[int, int, int], list[Route]] = {(0, 0, -1): [Route(cost=0.0, mask=0, order=(), paths=())]}
     for _ in tour.places:
         coming: dict[tuple[int, int, int], list[Route]] = {}
@@ -66,10 +67,15 @@ def best_route(
             moves = [(done + 1, others, done)] if done < tour.ordered else []
             moves += [(done, others | 1 << s, s) for s in rest if not others >> s & 1]
             for state in moves:
-                paths = cheapest(legs.between(here, tour.places[state[2]]).paths, blocked)
+                pair = (here, tour.places[state[2]])
+                if pair not in ways:
+                    ways[pair] = cheapest(legs.between(*pair).paths, blocked)
+                kept = coming.setdefault(state, [])
                 for route in routes:
-                    for way in paths:
-                        _offer(coming.setdefault(state, []), _longer(route, way, state[2]), uncertain)
+                    for way in ways[pair]:
+                        # All that is kept costs the same: most offers are dearer, and need not be made.
+                        if not kept or route.cost + way.cost <= kept[0].cost + TIE:
+                            _offer(kept, _longer(route, way, state[2]), uncertain)
         layer = {state: routes for state, routes in coming.items() if routes}
     ends = [
         route

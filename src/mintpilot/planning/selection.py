@@ -64,6 +64,12 @@ class _Reachable:
         return np.array([stop.price_s * stop.chance for stop in self.stops])
 
     @property
+    def least_s(self) -> float:
+        """No route through all stops takes less, seconds: that through the ordered ones, or to the farthest one."""
+        alone = self.start_s[0] + sum(self.apart_s[i, i + 1] for i in range(self.ordered - 1)) if self.ordered else 0.0
+        return float(max(alone, self.start_s.max()))
+
+    @property
     def later(self) -> tuple[int, ...]:
         """(n,) bit sets of the ordered stops that come after each ordered one."""
         every = (1 << self.ordered) - 1
@@ -85,6 +91,10 @@ class Selector:
         self.itinerary, self.legs = itinerary, legs
         self._limits = itinerary.problem.limits
         self.notes: set[str] = set()
+        self._flights: dict[tuple[Cell3, Cell3, int], float] = {}
+        middle = itinerary.terrain.frame.centres_of(np.array([itinerary.start]))[0]
+        # From the true start to the middle of its cell.
+        self.start_s = float(np.linalg.norm(middle - itinerary.problem.start_m)) / self._limits.cruise_mps
 
     @property
     def battery_s(self) -> float:
@@ -190,7 +200,7 @@ class Selector:
         self, found: _Reachable, blocked: int, uncertain: int
     ) -> tuple[tuple[int, ...], Route, dict[str, LeftUndone]] | None:
         """All stops, where the battery suffices and none can be worth leaving out."""
-        if len(found.stops) - found.ordered > MAX_FREE:
+        if len(found.stops) - found.ordered > MAX_FREE or found.least_s > found.weights_s.min() + TOLERANCE:
             return None
         numbers = tuple(range(len(found.stops)))
         route = self._route(found, numbers, blocked, uncertain)
@@ -280,12 +290,6 @@ class Selector:
     def _route_s(self, found: _Reachable, numbers: Sequence[int], route: Route) -> float:
         return self.start_s + route.cost * self.itinerary.edge_s + sum(found.stops[i].dwell_s for i in numbers)
 
-    @property
-    def start_s(self) -> float:
-        """From the true start to the middle of its cell."""
-        middle = self.itinerary.terrain.frame.centres_of(np.array([self.itinerary.start]))[0]
-        return float(np.linalg.norm(middle - self.itinerary.problem.start_m)) / self._limits.cruise_mps
-
     def _home_s(self, cell: Cell3, blocked: int) -> float:
         if self.itinerary.problem.home_m is None:
             return 0.0
@@ -293,8 +297,11 @@ class Selector:
         return float("inf") if home is None else self._flight_s(cell, home, blocked)
 
     def _flight_s(self, one: Cell3, other: Cell3, blocked: int) -> float:
-        way = self.legs.between(one, other).best(blocked)
-        return float("inf") if way is None else way.cost * self.itinerary.edge_s
+        key = (one, other, blocked)
+        if key not in self._flights:
+            way = self.legs.between(one, other).best(blocked)
+            self._flights[key] = float("inf") if way is None else way.cost * self.itinerary.edge_s
+        return self._flights[key]
 
 
 def picked_for(stop: Stop, ordered: Sequence[Stop]) -> Stop | None:

@@ -48,24 +48,29 @@ class LazyPlanner(Planner):
     """Plans with a path finder that is a black box, by lazy branching: as exact, with more searches.
 
     Args:
-        find: the path finder.
+        find: the path finder. One that is not exact gives sound plans too, but maybe not the best.
         max_searches: bound on its calls for one pair of places.
+        reversible: whether its way back is as good as the way there, reversed, so that one search serves for both.
     """
 
-    def __init__(self, find: FindPath, *, max_searches: int = 4096) -> None:
-        self._find, self._max_searches = find, max_searches
+    def __init__(self, find: FindPath, *, max_searches: int = 4096, reversible: bool = True) -> None:
+        self._find, self._max_searches, self._reversible = find, max_searches, reversible
 
     def open(self, problem: PlanningProblem) -> GridPlanSpace:
         """The plans of that problem, as `GridPlanner.open`."""
         terrain = terrain_of(problem)
-        return GridPlanSpace(problem, terrain, _BlackBox(self._find, terrain.free, terrain.regions, self._max_searches))
+        search = _BlackBox(self._find, terrain.free, terrain.regions, self._max_searches, reversible=self._reversible)
+        return GridPlanSpace(problem, terrain, search)
 
 
 class _BlackBox:
     """Decision lists between cells from a path finder that knows nothing of regions."""
 
-    def __init__(self, find: FindPath, free: Bools, regions: tuple[Ints, ...], max_searches: int) -> None:
+    def __init__(
+        self, find: FindPath, free: Bools, regions: tuple[Ints, ...], max_searches: int, *, reversible: bool
+    ) -> None:
         self.searches = 0
+        self.reversible = reversible
         self._find, self._free, self._max_searches = find, free, max_searches
         self._regions = regions
         self._ends: tuple[tuple[int, int, int], tuple[int, int, int]] = ((0, 0, 0), (0, 0, 0))

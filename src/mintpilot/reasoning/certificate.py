@@ -24,6 +24,7 @@ _BECAUSE: Final = {
     StopReason.INFEASIBLE: "Nothing can be flown under anything that is still possible.",
     StopReason.PRICE: "However it were asked on, it would cost more than it saves.",
     StopReason.WAITING: "Waiting for an answer may lose more than it gives: the battery runs meanwhile.",
+    StopReason.LOOK: "A look tells more a second than any question.",
     StopReason.NEVER_ASKS: "This method does not ask.",
     StopReason.LIMIT: "A bound on the work was reached.",
 }

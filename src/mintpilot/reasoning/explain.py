@@ -104,12 +104,16 @@ def _worth(mint: Mint, regret_s: Floats, gap_id: str) -> tuple[float, float]:
     return gain, max(0.0, expected_regret_s(regret_s, p) - after)
 
 
-def decided(explanation: GapExplanation, asked: bool) -> GapExplanation:
-    """The explanation once it is known whether the gap was asked about."""
+def decided(explanation: GapExplanation, asked: bool, looked: bool = False) -> GapExplanation:
+    """The explanation once it is known whether the gap was asked about, or looked at."""
     if not explanation.figures:
         return replace(explanation, asked=asked)
     if asked:
         why = f"Asked: {explanation.figures}."
+        if looked:
+            why = f"Looked at, and asked: {explanation.figures}."
+    elif looked:
+        why = f"Looked at: {explanation.figures}."
     elif explanation.relevant:
         why = f"Not asked: {explanation.figures}, but other answers settled the plan."
     else:

@@ -44,7 +44,7 @@ def taken_for_granted(belief: Belief, confirmed: Collection[str], settings: Aski
             if known_passable(gap.id, belief, confirmed, settings):
                 possible[gap.id] = (PASSABLE,)
         elif p.max() >= 1 - settings.alpha or (
-            gap.kind is GapKind.TARGET and entropy_bits(p) <= settings.goal_entropy_bits
+            gap.kind is GapKind.TARGET and not gap.is_search and entropy_bits(p) <= settings.goal_entropy_bits
         ):
             possible[gap.id] = (likeliest,)
         else:

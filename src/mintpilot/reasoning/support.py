@@ -48,11 +48,14 @@ def narrow(belief: Belief, given: Assumptions, floor: float, changed: str = "") 
 
 
 def clear_targets(belief: Belief, given: Assumptions, threshold_bits: float) -> dict[str, tuple[str, float]]:
-    """Open target gaps whose goal entropy does not pass the threshold: id → (likeliest value, entropy in bits)."""
+    """Open target gaps whose goal entropy does not pass the threshold: id → (likeliest value, entropy in bits).
+
+    Where something unseen may be is never clear enough: how much it is worth to look there is a matter of prices.
+    """
     clear: dict[str, tuple[str, float]] = {}
     for factor in belief.factors:
         for gap in factor.gaps:
-            if gap.kind is GapKind.TARGET and given.is_open(gap):
+            if gap.kind is GapKind.TARGET and not gap.is_search and given.is_open(gap):
                 probability = conditional(factor, given, gap)
                 bits = entropy_bits(probability)
                 if bits <= threshold_bits:

@@ -18,7 +18,7 @@ from mintpilot.core.errors import MissionError
 from mintpilot.core.gap import Assumptions, Belief, GapKind, KnowledgeGap
 from mintpilot.core.mission import AskingSettings, CriticalityRule
 from mintpilot.core.plan import Plan
-from mintpilot.core.ports import ImpactMetric, PlanSpace
+from mintpilot.core.ports import ImpactMetric, PlanMetric, PlanSpace
 from mintpilot.core.tolerances import DECIMALS, TOLERANCE
 from mintpilot.core.tree import LeafReason, Mint
 from mintpilot.reasoning.classes import NodeDraft, finish, least_cost_s
@@ -39,7 +39,8 @@ def build_tree(space: PlanSpace, belief: Belief, settings: AskingSettings, metri
         space: the plans of the problem.
         belief: over all open gaps of the problem.
         settings: rule, thresholds and bounds.
-        metric: distance between paths.
+        metric: distance between paths; a `PlanMetric` (for the problem of these plans) also says what following the
+            cautious plan loses, in place of the plans' costs.
 
     Raises:
         MissionError: a plan relies on a gap of which the belief says nothing.
@@ -100,10 +101,10 @@ class _Growth:
         if pair not in self.distances:
             self.distances[pair] = self.metric.divergence(best.path_m, sure.path_m)
         node.divergence_m = self.distances[pair]
-        if (
-            _dearest_s(sure, node.given, self.gaps) - least_cost_s(best, node.given)
-            > self.settings.delta_c_s + TOLERANCE
-        ):
+        loss_s = _dearest_s(sure, node.given, self.gaps) - least_cost_s(best, node.given)
+        if isinstance(self.metric, PlanMetric):
+            loss_s += self.metric.loss_s(best, sure, node.given) - (sure.cost_s - best.cost_s)
+        if loss_s > self.settings.delta_c_s + TOLERANCE:
             return False
         if self.settings.rule is CriticalityRule.REGRET:
             return True

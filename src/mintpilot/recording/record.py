@@ -206,7 +206,8 @@ class FlightRecord(Part):
     """Length of the trajectories; of those that were broken off, the part that was commanded."""
     flown_m: Figure
     seconds: Figure
-    """Vehicle's clock, from the first sample to the last."""
+    """Vehicle's clock, from the first sample of the first flight to the last of the last one: stays and waits between
+    them count, those before and after do not."""
     rms_error_m: Figure
     """Root mean square distance between where the drone was and where it should have been."""
     max_error_m: Figure

@@ -19,7 +19,13 @@ from mintpilot.recording.words import OUTCOME_WORDS, printable
 
 WIDTH = 100
 """Columns that the report fits into."""
-_STYLES = {Reply.YES: "bold green", Reply.NO: "bold red", Reply.UNSURE: "bold yellow", Reply.TIMEOUT: "bold yellow"}
+_STYLES = {
+    Reply.YES: "bold green",
+    Reply.NO: "bold red",
+    Reply.OPTION: "bold cyan",
+    Reply.UNSURE: "bold yellow",
+    Reply.TIMEOUT: "bold yellow",
+}
 
 
 def print_report(record: MissionRecord, console: Console) -> None:

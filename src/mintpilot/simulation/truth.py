@@ -7,13 +7,26 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from mintpilot.core.gap import ABSENT, BLOCKED, NONE_OF_THEM, PASSABLE, PRESENT, Candidate, GapKind, KnowledgeGap
+from mintpilot.core.gap import (
+    ABSENT,
+    BLOCKED,
+    NONE_OF_THEM,
+    NOT_HERE,
+    PASSABLE,
+    PRESENT,
+    Candidate,
+    GapKind,
+    KnowledgeGap,
+)
 from mintpilot.core.geometry import Box, Vec3
 from mintpilot.core.ports import TruthOracle
 from mintpilot.simulation.scene import Scene
 
 TOLERANCE_M = 1.5
 """What the drone speaks of lies at most this far from the thing itself; otherwise nothing is there."""
+
+ZONE_M = 8.0
+"""What was not seen lies at most this far from the viewpoint of its zone, metres."""
 
 BODY_M = 1.0
 """What is taken for a person is one if somebody's middle is nearer on the ground, metres."""
@@ -32,7 +45,8 @@ class SceneTruth(TruthOracle):
       means blocked.
     * Presence gap: the nearest closed room says whether somebody is inside; of a thing, whether somebody is there.
     * Target gap: the candidate at the first of `Scene.goal_objects` that is among the candidates; without one, the
-      candidate at a person who must be found; where the phrase may mean none of them, and none is there, that.
+      candidate at a person who must be found; where the phrase may mean none of them, and none is there, that. Of zones
+      of unseen space, the one nearest to what is sought.
 
     Args:
         scene: the world.
@@ -51,7 +65,7 @@ class SceneTruth(TruthOracle):
             case GapKind.PRESENCE:
                 value = self._is_somebody(gap.position_m) if gap.is_thing else self._occupied(gap.position_m)
             case GapKind.TARGET:
-                value = self._meant(gap.candidates)
+                value = self._zone(gap.candidates) if gap.is_search else self._meant(gap.candidates)
             case GapKind.VALUE | GapKind.GO:
                 value = None
         return value if value in gap.values else None
@@ -91,6 +105,17 @@ class SceneTruth(TruthOracle):
             if found:
                 return min(found, key=lambda c: (math.dist(c.position_m, places[name]), c.id)).id
         return NONE_OF_THEM if wanted else None
+
+    def _zone(self, zones: tuple[Candidate, ...]) -> str | None:
+        """The zone of unseen space whose viewpoint is nearest to somebody who must be found in the open, or to a goal.
+
+        `NOT_HERE` where there is nothing to be found in the open; None where it is far from all zones.
+        """
+        wanted = {*self._scene.goal_objects, *(p.id for p in self._scene.persons if p.must_be_found)}
+        places = [place for name, place in self._places() if name in wanted]
+        away = [(math.dist(zone.position_m, place), zone.id) for zone in zones for place in places]
+        near = [entry for entry in away if entry[0] <= ZONE_M]
+        return min(near)[1] if near else None if places else NOT_HERE
 
     def _places(self) -> list[tuple[str, Vec3]]:
         """Middles of all things and persons."""

@@ -8,9 +8,10 @@ from collections.abc import Sequence
 from mintpilot.core.gap import PASSABLE, KnowledgeGap
 from mintpilot.core.plan import Plan
 from mintpilot.core.ports import Ask, Decision, Situation
-from mintpilot.core.query import Literal, Query, Saying, SayingKind, is_refused
+from mintpilot.core.query import Query, is_refused
 from mintpilot.core.tolerances import TOLERANCE
 from mintpilot.core.tree import Mint, ScoredQuery, StopReason
+from mintpilot.elicitation.candidates import passable_literal
 from mintpilot.elicitation.sentences import is_sayable
 from mintpilot.reasoning.certificate import bound_s
 from mintpilot.reasoning.safety import unknown_regions
@@ -66,8 +67,7 @@ def confirm_or_avoid(situation: Situation, mint: Mint, plan: Plan, reason: StopR
 
 def passable_query(*gaps: KnowledgeGap) -> Query:
     """The query that asks for an explicit yes for one region, or for all of several at once."""
-    saying = Saying(kind=SayingKind.VALUE, value=PASSABLE)
-    return Query(literals=tuple(Literal(gap=gap.id, values=frozenset({PASSABLE}), saying=saying) for gap in gaps))
+    return Query(literals=tuple(passable_literal(gap) for gap in gaps))
 
 
 def _sayable_together(gaps: Sequence[KnowledgeGap]) -> bool:

@@ -103,7 +103,9 @@ def _without_gain(situation: Situation, mint: Mint, gain: float) -> Ask | Fly:
 
 def _rank(situation: Situation, mint: Mint, regret_s: Floats, objective: QueryObjective) -> tuple[ScoredQuery, ...]:
     """The enumerated queries, best first."""
-    queries = candidate_queries(mint, start_m=situation.problem.start_m, refused=situation.withdrawn)
+    queries = candidate_queries(
+        mint, start_m=situation.problem.start_m, refused=situation.withdrawn, kinds=situation.settings.kinds
+    )
     asked = {one.query.id for one in situation.asked}
     return choose(answerable(queries, situation), mint, regret_s, objective, situation.settings, asked=asked)
 

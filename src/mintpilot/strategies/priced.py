@@ -54,8 +54,10 @@ def worth_s(situation: Situation, mint: Mint) -> tuple[float, float]:
         i for i, plan in enumerate(plans_of(mint)[: len(regret_s)]) if plan is None or may_be_flown(situation, plan)
     ]
     acting_s = float((regret_s[flown] @ mass).min()) if flown else float("inf")
-    queries = candidate_queries(mint, start_m=situation.problem.start_m, refused=situation.withdrawn)
-    rows = [part_row(query, mint.belief)[support] for query in answerable(queries, situation)]
+    queries = candidate_queries(
+        mint, start_m=situation.problem.start_m, refused=situation.withdrawn, kinds=situation.settings.kinds
+    )
+    rows = [(query.effort, part_row(query, mint.belief)[support]) for query in answerable(queries, situation)]
     ahead = _Ahead(regret_s, mass, rows, situation.settings.question_price_s)
     return acting_s, ahead.asking_s(np.ones(support.size, bool), questions_left(situation))
 
@@ -63,10 +65,11 @@ def worth_s(situation: Situation, mint: Mint) -> tuple[float, float]:
 class _Ahead:
     """The best policies over sets of hypotheses, each worked out once."""
 
-    def __init__(self, regret_s: Floats, mass: Floats, rows: list[np.ndarray], price_s: float) -> None:
+    def __init__(self, regret_s: Floats, mass: Floats, rows: list[tuple[float, np.ndarray]], price_s: float) -> None:
         self._loss = regret_s * mass
         self._mass, self._price_s = mass, price_s
-        self._splits = list({row.tobytes(): row for row in rows}.values())
+        # Of queries that divide alike the one of least effort stays.
+        self._splits = list({row.tobytes(): (effort, row) for effort, row in sorted(rows, key=_effort)[::-1]}.values())
         self._known: dict[tuple[bytes, int], float] = {}
 
     def asking_s(self, held: Bools, left: int) -> float:
@@ -77,10 +80,10 @@ class _Ahead:
         if len(self._known) >= MAX_POLICIES:
             return price_s + float(self._loss[:, held].min(axis=0).sum())
         best = float("inf")
-        for row in self._splits:
+        for effort, row in self._splits:
             parts = [held & (row == part) for part in np.unique(row[held])]
             if len(parts) > 1:
-                best = min(best, price_s + sum(self._best_s(part, left - 1) for part in parts))
+                best = min(best, effort * price_s + sum(self._best_s(part, left - 1) for part in parts))
         return best
 
     def _best_s(self, held: Bools, left: int) -> float:
@@ -92,3 +95,7 @@ class _Ahead:
             if acting_s > self._price_s * float(self._mass[held].sum()) + TOLERANCE:
                 self._known[key] = min(acting_s, self.asking_s(held, left))
         return self._known[key]
+
+
+def _effort(row: tuple[float, np.ndarray]) -> float:
+    return row[0]

@@ -96,7 +96,7 @@ def sound_proposals(situation: Situation, mint: Mint, proposed: Sequence[Query])
     start_m = situation.problem.start_m
     language = {name: set(gap_literals(gap, start_m)) for name, gap in gaps.items()}
     spent = {one.query.id for one in situation.asked}
-    known = {_key(query, mint) for query in candidate_queries(mint, start_m=start_m)}
+    known = {_key(query, mint) for query in candidate_queries(mint, start_m=start_m, kinds=situation.settings.kinds)}
     sound: list[Query] = []
     for query in proposed[:MOST]:
         spoken = all(x.gap in gaps and x in language[x.gap] for x in query.every_literal)

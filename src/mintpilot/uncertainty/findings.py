@@ -15,11 +15,15 @@ from mintpilot.core.rule import Ruling
 from mintpilot.core.semantic_map import Knowledge, Region, SemanticMap
 from mintpilot.core.task import Task
 from mintpilot.uncertainty.describing import describe, place
+from mintpilot.uncertainty.doubts import is_doubtful_person
 from mintpilot.uncertainty.gaps import obstacle_gaps, people_gaps, presence_gaps
 from mintpilot.uncertainty.keep_away import PREFIX
 from mintpilot.uncertainty.matching import Standpoint
-from mintpilot.uncertainty.targets import bind
-from mintpilot.uncertainty.things import Thing, things_of
+from mintpilot.uncertainty.targets import Binding, bind
+from mintpilot.uncertainty.things import Thing, stands_for, things_of
+
+SOMEBODY = "somebody who needs help"
+"""Who is sought where everybody must be found."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -32,6 +36,10 @@ class Findings:
     """Ordered stops in order, then the optional ones, sorted by id."""
     problems: tuple[str, ...]
     """A plain sentence for each reference that matches nothing, with what was seen instead."""
+    sought: str = ""
+    """What is sought and on no map yet, in plain words; empty where all that is sought was seen."""
+    unseen: tuple[str, ...] = ()
+    """Those of the problems that end once more was seen."""
     wishes: tuple[str, ...] = ()
     """Ids of open regions that are stayed out of only because the person wished so. Where nothing can be flown,
     `find_gaps` with ``honour_wishes=False`` lets them be asked about."""
@@ -90,8 +98,18 @@ def find_gaps(
         gaps=tuple(sorted(told_apart(gaps, map.frame.box.lo_m), key=lambda gap: gap.id)),
         stops=tuple(_on_layer(stop, map) for stop in stops),
         problems=tuple(dict.fromkeys((*bound.problems, *_heights(task, map)))),
+        sought=_sought(task, things, bound),
+        unseen=tuple(bound.unmatched.values()),
         wishes=tuple(sorted(r.id for r in map.regions if _is_wish(r, wished) and r.passable is Knowledge.OPEN)),
     )
+
+
+def _sought(task: Task, things: Sequence[Thing], bound: Binding) -> str:
+    """What matches nothing that was seen; of people whoever needs help, while nobody was seen for certain."""
+    if bound.unmatched:
+        return next(iter(bound.unmatched))
+    seen = any(stands_for(t.label, PERSON) and not is_doubtful_person(t) for t in things)
+    return "" if seen or not task.seeks_people else SOMEBODY
 
 
 def _is_wish(region: Region, wished: set[RegionKind]) -> bool:
@@ -171,10 +189,12 @@ def _weighed(
         text = f"go to {called.get(named[0], named[0])}" if step.action == "seek" and named else step.text
         return replace(stop, price_s=own_s, step=step.n, text=text)
     gap = next(gap for gap in findings.gaps if gap.id == stop.gap)
-    chance = belief.probability_of(gap.id, PRESENT) if belief else gap.prior[gap.values.index(PRESENT)]
+    value = stop.sites[0].value or PRESENT
+    chance = belief.probability_of(gap.id, value) if belief else gap.prior[gap.values.index(value)]
     price_s = prices.usual_s if prices.people_s is None else prices.people_s
     seek, verb = task.step_for(0).n, "look closer at" if gap.is_thing else "look into"
-    return replace(stop, price_s=price_s, chance=chance, step=seek, text=f"{verb} {gap.description}")
+    about = next((one.description for one in gap.candidates if one.id == value), gap.description)
+    return replace(stop, price_s=price_s, chance=chance, step=seek, text=f"{verb} {about}")
 
 
 def told_apart(gaps: Sequence[KnowledgeGap], corner_m: Vec3) -> list[KnowledgeGap]:

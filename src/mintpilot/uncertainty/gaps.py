@@ -33,6 +33,7 @@ def obstacle_gaps(
             values=(PASSABLE, BLOCKED),
             prior=_two(prior_passable if region.prior_passable is None else region.prior_passable),
             position_m=region_middle_m(map, region),
+            threshold=region.threshold,
         )
         for region in map.regions
         if region.passable is Knowledge.OPEN and region.cells.size and region.id not in leave_out

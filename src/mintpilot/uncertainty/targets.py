@@ -37,6 +37,8 @@ class Binding:
     stops: list[Stop] = field(default_factory=list)
     gaps: dict[str, KnowledgeGap] = field(default_factory=dict)
     problems: list[str] = field(default_factory=list)
+    unmatched: dict[str, str] = field(default_factory=dict)
+    """Phrases that match nothing which was seen, with the problem that says so."""
 
     def one(self, stop_id: str, subgoal: SubGoal, reference: Reference, first: int) -> None:
         """Binds a sub-goal that means one thing; ``first`` is the number of the first one with this reference."""
@@ -83,6 +85,8 @@ class Binding:
         alike = [t for t in self.things if synonyms(t.label) & synonyms(label)] if label else []
         wanted = reference.object_id or reference.phrase
         self.problems.append(f"Nothing on the map matches '{wanted}'. Seen was {seen(alike or self.things)}.")
+        if not reference.object_id:
+            self.unmatched[reference.phrase] = self.problems[-1]
         return ()
 
 

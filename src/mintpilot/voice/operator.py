@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from mintpilot.core.errors import DeviceError
 from mintpilot.core.inputs import Answered, MoreTimeWanted, OperatorInput, Ordered, QuestionShown
 from mintpilot.core.ports import Operator, Understand
-from mintpilot.core.query import Answer, Order, Question, Reply, Standing
+from mintpilot.core.query import Answer, Order, Question, Reply, Standing, answer_for
 from mintpilot.core.reading import AnsweredBy, Reading, ReadingKind
 from mintpilot.interaction.answers import answer_of
 from mintpilot.language.answers import confirmation_in, order_in
@@ -299,9 +299,9 @@ class VoiceOperator(Operator):
                 self._repeat(turn)
                 return []
             case ReadingKind.WHY:
-                self._repeat(turn, after=f"Yes means: {question.yes_means}. No means: {question.no_means}.")
+                self._repeat(turn, after=_why(question))
                 return []
-            case ReadingKind.AGAIN | ReadingKind.OPTION | ReadingKind.ORDER:
+            case ReadingKind.AGAIN | ReadingKind.ORDER:
                 return self._again(turn, text, time_s, waited_s)
         answer = answer_of(reading, text, question, latency_s=waited_s, by=AnsweredBy.VOICE)
         turn.is_said = False  # until it is read back, or something else is asked
@@ -327,12 +327,23 @@ class VoiceOperator(Operator):
 
 def _read_back(question: Question, answer: Answer) -> str:
     """What was understood, with the word that confirms it."""
-    means = {Reply.YES: question.yes_means, Reply.NO: question.no_means}.get(answer.reply, "")
-    said = f"{answer.reply.value}: {means}" if means else answer.reply.value
+    part, query = answer.part, question.query
+    said = answer.reply.value
+    if part is not None:
+        named = f"{part + 1}, {query.part_words(part)}" if query.is_choice else said
+        means = question.means(part)
+        said = f"{named}: {means}" if means else named
     return f"I understood {said}. Say confirm, or no."
+
+
+def _why(question: Question) -> str:
+    """What follows from each answer."""
+    query = question.query
+    said = [str(part + 1) if query.is_choice else query.part_words(part) for part in range(query.part_count)]
+    return " ".join(f"{words.capitalize()} means: {question.means(part)}." for part, words in enumerate(said))
 
 
 def words_of(question: Question) -> tuple[str, ...]:
     """Everything that may be said for a question: itself and its read-backs, for caches and simulated people."""
-    replies = (Answer(reply=reply, latency_s=0.0) for reply in (Reply.YES, Reply.NO))
+    replies = (answer_for(question.query, part) for part in range(question.query.part_count))
     return (question.text, *(_read_back(replace(question, read_back=reply), reply) for reply in replies))

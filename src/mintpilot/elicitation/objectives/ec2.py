@@ -20,7 +20,7 @@ class Ec2(QueryObjective):
     """
 
     def scores(self, situation: QuerySituation) -> Floats:
-        """Shares (q,), each from 0 to 1; 0 where all hypotheses are of one class."""
+        """Shares (q,), each from 0 to 1, over the effort of an answer; 0 where all hypotheses are of one class."""
         if not len(situation.parts):
             return np.zeros(0)
         total: Floats = np.asarray(np.bincount(situation.class_of, weights=situation.probability), float)
@@ -31,7 +31,7 @@ class Ec2(QueryObjective):
         said = heard(masses.sum(axis=2, keepdims=True), situation)[:, :, 0]
         share: Floats = np.clip((said * self._cut(masses, edges, situation)).sum(axis=1) / edges, 0.0, 1.0)
         share[share <= ROUNDING] = 0.0
-        return share
+        return share / situation.effort
 
     @staticmethod
     def _cut(masses: Floats, edges: float, situation: QuerySituation) -> Floats:

@@ -23,10 +23,11 @@ class InformationGain(QueryObjective):
     """
 
     def scores(self, situation: QuerySituation) -> Floats:
-        """Bits (q,), each from 0 to log2 of the number of parts."""
-        gain = class_gain_bits(situation)
+        """Bits (q,), each from 0 to log2 of the number of parts, over the effort that an answer takes."""
+        gain = class_gain_bits(situation) / situation.effort
         if len(gain) and gain.max() <= TOLERANCE and np.unique(situation.class_of).size > 1:
-            return FALLBACK * class_gain_bits(replace(situation, class_of=np.arange(situation.probability.size)))
+            single = replace(situation, class_of=np.arange(situation.probability.size))
+            return FALLBACK * class_gain_bits(single) / situation.effort
         return gain
 
 

@@ -20,7 +20,8 @@ _BEHIND = 1e-6
 
 
 class Optimal(QueryObjective):
-    """Fewest expected questions until asking may stop (method, section 5), with a memo over posterior supports.
+    """Least expected time of the operator until asking may stop (method, section 5): fewest questions, where all take
+    the same. With a memo over posterior supports.
 
     Asking may stop when one plan class holds ``1 - alpha`` of the mass, when one plan is within ``delta_c_s`` of the
     best under all that is left, or when no query splits what is left. Exact for answer error 0 only.
@@ -33,8 +34,9 @@ class Optimal(QueryObjective):
         self._max_states = max_states
 
     def scores(self, situation: QuerySituation) -> Floats:
-        """For each query (q,), 1 / expected questions when it is asked first, itself counted; 0 for useless ones.
+        """For each query (q,), 1 / expected effort when it is asked first, itself counted; 0 for useless ones.
 
+        The effort is the operator's time in units of a yes or no (`mintpilot.core.query.Query.effort`).
         Exact for the best query; for others it may be an upper bound, always below the best.
 
         Raises:
@@ -60,8 +62,17 @@ class _Programme:
         count = len(labels)
         self.mass: Floats = np.asarray(np.bincount(kind_of.ravel(), weights=situation.probability), float)
         self.row_of: Ints
-        rows, self.row_of = np.unique(kinds[:count], axis=0, return_inverse=True)
+        efforts, effort_of = np.unique(situation.effort, return_inverse=True)
+        rows, self.row_of = np.unique(np.column_stack([effort_of.ravel(), kinds[:count]]), axis=0, return_inverse=True)
+        self.effort: Floats = efforts[rows[:, 0]]
+        """(queries,) what each takes."""
+        rows = rows[:, 1:]
         self.arity = int(situation.part_count.max(initial=2))
+        self.least = float(situation.effort.min(initial=np.inf))
+        bits = np.log2(situation.part_count)
+        # No query brings more bits for less, nor replaces more levels of yes and no.
+        self.per_bit = float((situation.effort / bits).min(initial=np.inf))
+        self.per_level = float((situation.effort / np.ceil(bits)).min(initial=np.inf))
         self.heads: Bools = rows[:, None, :] == np.arange(self.arity - 1, 0, -1)[:, None]
         """(queries, arity - 1, hypotheses): all parts but one, which holds what is left."""
         # What no query tells apart ends the asking just as one good plan does.
@@ -74,19 +85,27 @@ class _Programme:
         self.slack = _fano(settings.alpha, len(classes))
         self.max_states = max_states
         self.values: dict[bytes, tuple[float, bool]] = {}
-        """By support: expected questions, and whether that is exact or a lower bound."""
+        """By support: expected effort, and whether that is exact or a lower bound."""
 
     def scores(self) -> Floats:
         everything = np.ones(self.mass.size, bool)
         if self.bounds(everything[None, :])[0] == 0:
             return np.zeros(len(self.row_of))
         least, _, _ = self.search(everything)
-        parts = _ordered(self.heads, everything)
-        worth = np.array([1.0 / least[key] if key in least else 0.0 for key in _keys(parts)])
+        keys = _keys(_ordered(self.heads, everything))
+        cheapest: dict[bytes, float] = {}
+        for key, effort in zip(keys, self.effort.tolist(), strict=True):
+            cheapest[key] = min(effort, cheapest.get(key, effort))
+        worth = np.array(
+            [
+                1.0 / (least[key] + effort - cheapest[key]) if key in least else 0.0
+                for key, effort in zip(keys, self.effort.tolist(), strict=True)
+            ]
+        )
         return worth[self.row_of.ravel()]
 
     def value(self, support: Bools, limit: float) -> float:
-        """Fewest expected questions from this support on; where that is ``limit`` or more, a lower bound of it."""
+        """Least expected effort from this support on; where that is ``limit`` or more, a lower bound of it."""
         key = np.packbits(support).tobytes()
         least, exact = self.values.get(key, (0.0, False))
         if exact or least >= limit:
@@ -105,26 +124,32 @@ class _Programme:
         return least
 
     def search(self, support: Bools, limit: float = float("inf")) -> tuple[dict[bytes, float], float, bool]:
-        """Expected questions for each query asked first, by its parts; the least of them; whether that is exact.
+        """Expected effort for each query asked first, by its parts; the least of them; whether that is exact.
 
+        Of queries that divide alike the one of least effort counts.
         For queries that are no better than the best one, or than ``limit``, the figure may be a lower bound, but is
         always above the best.
         """
         heads = self.heads & support
         inside = heads.sum(axis=2)
         total = support.sum()
-        heads = heads[(inside.max(axis=1) < total) & (inside.sum(axis=1) > 0)]
+        divides = (inside.max(axis=1) < total) & (inside.sum(axis=1) > 0)
+        heads, effort = heads[divides], self.effort[divides]
         if not len(heads):
             return {}, 0.0, True
         parts = _ordered(heads, support)
-        row_of = {key: row for row, key in enumerate(_keys(parts))}
+        row_of: dict[bytes, int] = {}
+        for row, key in enumerate(_keys(parts)):
+            if key not in row_of or effort[row] < effort[row_of[key]]:
+                row_of[key] = row
         keys = sorted(row_of)
-        parts = parts[[row_of[key] for key in keys]]
+        rows = [row_of[key] for key in keys]
+        parts, effort = parts[rows], effort[rows]
         share = (parts[:, :-1].reshape(-1, support.size) @ self.mass).reshape(len(parts), -1)
         share = share / self.mass[support].sum()
         share = np.concatenate([share, 1 - share.sum(axis=1, keepdims=True)], axis=1)
         below = self.bounds(parts.reshape(-1, support.size)).reshape(share.shape)
-        least = 1.0 + (share * below).sum(axis=1)
+        least = effort + (share * below).sum(axis=1)
         best, exact = limit, np.zeros(len(parts), bool)
         uneven = np.abs(share[:, :-1] - 1 / self.arity).sum(axis=1)
         # The lowest bound first; among equal bounds the most even query.
@@ -142,11 +167,12 @@ class _Programme:
         return dict(zip(keys, least.tolist(), strict=True)), best if exact.any() else found, bool(exact.any())
 
     def bounds(self, supports: Bools) -> Floats:
-        """For each support (s, hypotheses): 0 where asking may stop, else a lower bound on the expected questions.
+        """For each support (s, hypotheses): 0 where asking may stop, else a lower bound on the expected effort.
 
         Asking ends in parts that one plan covers, or all but ``alpha`` of which one class covers. However they are
         divided, those of n covers weigh no more than the n heaviest covers, overlaps counted twice; so no way of asking
-        beats Huffman's code for those, over as many symbols as the largest query has parts.
+        beats Huffman's code for those, over as many symbols as the largest query has parts, at the least effort each;
+        nor that over two symbols, at the least effort for each level that a query replaces.
         """
         weight = supports * self.mass
         total = weight.sum(axis=1)
@@ -154,12 +180,15 @@ class _Programme:
         covered = supports @ self.good.T >= supports.sum(axis=1)[:, None]
         stop = (by_class.max(axis=1) >= self.enough * total - ROUNDING) | covered.any(axis=1)
         covers = np.hstack([by_class / self.enough, weight @ self.good.T])
-        least = huffman(covers / np.maximum(total, ROUNDING)[:, None], self.arity)
+        covers = covers / np.maximum(total, ROUNDING)[:, None]
+        least = self.least * huffman(covers, self.arity)
+        if self.arity > 2:
+            least = np.maximum(least, self.per_level * huffman(covers, 2))
         if not self.shared:
             share = by_class / np.maximum(total, ROUNDING)[:, None]
             entropy = -(share * np.log2(np.where(share > 0, share, 1.0))).sum(axis=1)
-            least = np.maximum(least, (entropy - self.slack) / np.log2(self.arity))
-        bound: Floats = np.where(stop, 0.0, np.maximum(1.0, least))
+            least = np.maximum(least, (entropy - self.slack) * self.per_bit)
+        bound: Floats = np.where(stop, 0.0, np.maximum(self.least, least))
         return bound
 
 

@@ -11,11 +11,14 @@ from mintpilot.elicitation.objectives.channel import heard, part_sums
 
 
 class ValueOfInformation(QueryObjective):
-    """Expected regret now, less that after the answer, less ``settings.question_price_s``."""
+    """Expected regret now, less that after the answer, over its effort, less ``settings.question_price_s``.
+
+    The price is that of a yes or no; what takes longer to answer costs more in proportion.
+    """
 
     def scores(self, situation: QuerySituation) -> Floats:
         """Seconds (q,); 0 or less where the answer is not worth its price."""
-        return regret_saved_s(situation) - situation.settings.question_price_s
+        return regret_saved_s(situation) / situation.effort - situation.settings.question_price_s
 
 
 def regret_saved_s(situation: QuerySituation) -> Floats:
