@@ -92,6 +92,7 @@ TITLES = {
     "GeoreferenceSpec": "georeference",
     "SceneSpec": "scene",
     "KeepAwaySpec": "distance to be kept",
+    "RuleSpec": "rule in time",
     "LookSpec": "look",
     "SolidSpec": "solid",
     "SmokeSpec": "smoke",

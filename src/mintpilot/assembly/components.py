@@ -20,7 +20,7 @@ from mintpilot.assembly.talk import Talk
 from mintpilot.assembly.worlds import World
 from mintpilot.core.errors import InputError
 from mintpilot.core.geometry import Floats, GridFrame
-from mintpilot.core.ports import Operator, Perception, Recorder, Vehicle
+from mintpilot.core.ports import Judge, Operator, Perception, Recorder, Vehicle
 from mintpilot.core.semantic_map import SemanticMap
 from mintpilot.core.task import Action
 from mintpilot.core.think_time import think_time
@@ -266,10 +266,17 @@ class _Components(AbstractContextManager[MissionComponents]):
         known: SemanticMap | None,
         watch_map: bool,
     ) -> MissionComponents:
+        made = self._common(simulator, source, known=known, watch_map=watch_map)
+        judge: Judge = simulator
+        if self._world.task.rules:
+            from mintpilot.assembly.rule_judge import RuleJudge
+
+            judge = ruled = RuleJudge(simulator, made.recorder, self._world)
+            made = replace(made, recorder=ruled)
         return replace(
-            self._common(simulator, source, known=known, watch_map=watch_map),
+            made,
             begin_task=simulator.begin_mission,
-            judge=simulator,
+            judge=judge,
             surveys=surveys,
             simulated=True,
         )

@@ -18,6 +18,7 @@ from mintpilot.core.plan import VehicleLimits
 from mintpilot.core.semantic_map import SemanticMap
 from mintpilot.core.task import SLOW, KeepAway, Reference, Task
 from mintpilot.mapping.listed_objects import with_solid_objects
+from mintpilot.mission_file.ruling import rules_of
 from mintpilot.mission_file.schema import MissionFile
 from mintpilot.mission_file.schema_base import attributes_of, place_of
 from mintpilot.mission_file.schema_core import asking_of, correlations_of, limits_of, mission_of, task_of, truths_of
@@ -283,6 +284,8 @@ def _with_wishes(task: Task, file: MissionFile) -> Task:
     """The task with the distances that the file wants kept, besides those of the instruction."""
     if file.seeks_people is not None and file.seeks_people is not task.seeks_people:
         task = replace(task, seeks_people=file.seeks_people)
+    if file.rules:
+        task = replace(task, rules=rules_of(file))
     if not file.keep_away:
         return task
     from mintpilot.language.phrases import parse_phrase

@@ -256,6 +256,8 @@ class Outcome(StrEnum):
     """The operator ended it."""
     VEHICLE_FAILED = "vehicle-failed"
     """The vehicle or its link failed; it holds or lands by itself."""
+    RULE_BROKEN = "rule-broken"
+    """A rule of the mission was broken."""
     NOT_REACHED = "not-reached"
     """The flight ended before every sub-goal was reached."""
 

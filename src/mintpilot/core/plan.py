@@ -12,6 +12,7 @@ import numpy as np
 from mintpilot.core.errors import MissionError
 from mintpilot.core.gap import Assumptions, KnowledgeGap
 from mintpilot.core.geometry import Floats, Vec3, frozen
+from mintpilot.core.rule import Ruling
 from mintpilot.core.semantic_map import SemanticMap
 from mintpilot.core.task import Action
 
@@ -131,6 +132,8 @@ class Shortage(StrEnum):
     """It is none of the things that were seen."""
     PRICE = "price"
     """The flight would cost more than leaving it undone."""
+    RULE = "rule"
+    """A rule of the mission does not allow it."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -143,6 +146,8 @@ class LeftUndone:
     """Flight time that doing it besides would take (or, alone, where it is too far even then), seconds."""
     available_s: float | None = None
     """Flight time that is left for it, or the price that it is worth, seconds."""
+    rules: tuple[str, ...] = ()
+    """Words of the rules that do not allow it."""
 
     @property
     def reason(self) -> str:
@@ -162,6 +167,8 @@ class LeftUndone:
                 return "which one is meant is not known"
             case Shortage.UNSEEN:
                 return "it is none of the things that were seen"
+            case Shortage.RULE:
+                return f"it cannot be done while this is kept: {'; '.join(self.rules)}"
 
 
 def _seconds(needed: float, given: float) -> tuple[str, str]:
@@ -189,6 +196,8 @@ class PlanningProblem:
     """Ids of stops that were already fulfilled; they are not among ``stops``."""
     home_m: Vec3 | None = None
     """Where the drone must be able to return to after its last stop; None: nowhere."""
+    ruling: Ruling | None = None
+    """The rules that every plan keeps to its end, the way home included; None: there are none."""
 
     def gap(self, gap_id: str) -> KnowledgeGap:
         """The gap with that id. Raises `KeyError` for an unknown one."""

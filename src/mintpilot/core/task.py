@@ -10,6 +10,7 @@ from enum import StrEnum
 from mintpilot.core.errors import MissionError
 from mintpilot.core.geometry import Vec3
 from mintpilot.core.observation import Attribute, RegionKind
+from mintpilot.core.rule import Rule
 
 START = "the start"
 """What the place of take-off is called in references and steps."""
@@ -74,6 +75,8 @@ class SubGoal:
     """Height at which the drone arrives, metres; None: whichever is nearest."""
     price_s: float | None = None
     """What leaving it undone costs, seconds of flight; None: what a failed mission counts for."""
+    id: str = ""
+    """What rules call it by; empty: no rule speaks of it."""
 
     def __post_init__(self) -> None:
         if self.price_s is not None and not 0 <= self.price_s < math.inf:
@@ -134,6 +137,8 @@ class Task:
     """What a distance is to be kept from."""
     slowly: bool = False
     """True when the person asked to fly slowly: the whole flight is flown at `SLOW` of the cruise speed."""
+    rules: tuple[Rule, ...] = ()
+    """What every flight keeps from take-off to its end; orders and fail-safes go before it (method, section 14)."""
     needs_confirmation: bool = False
     """True when a language model read the instruction: nothing is flown before the operator's yes to the steps."""
 
@@ -170,6 +175,8 @@ def step_lines(task: Task) -> Iterator[str]:
         yield "the whole flight slowly"
     if task.keep_out:
         yield f"keep out of: {', '.join(task.keep_out)}"
+    for rule in task.rules:
+        yield f"rule: {rule.text}"
 
 
 def _step(n: int, goal: SubGoal) -> Step:

@@ -11,6 +11,7 @@ from mintpilot.core.mission import AskingSettings
 from mintpilot.core.query import ATTRIBUTES_NOT_KNOWN, Answer, Evidence, Query, Reply, topics
 from mintpilot.core.semantic_map import SemanticMap
 from mintpilot.mission.extra_evidence import with_extra_evidence
+from mintpilot.mission.rule_progress import RuleProgress
 from mintpilot.reasoning.belief import condition
 
 
@@ -48,6 +49,8 @@ class BeliefState:
     """Ids of all queries that were put, oldest first, answered or not."""
     finished: frozenset[str] = frozenset()
     """Stops that were fulfilled."""
+    progress: RuleProgress = RuleProgress()  # noqa: RUF009  (a value)
+    """How far the rules have come."""
     silent: bool = False
     """No answer came within the operator's patience, or nobody is there."""
 

@@ -68,6 +68,7 @@ class MissionComponents:
         """What stays the same for the whole mission."""
         return Setup(
             mission=self.parts.mission,
+            task=self.parts.task,
             surveys=self.surveys,
             simulated=self.simulated,
             lands=self.lands,

@@ -35,6 +35,7 @@ from mintpilot.mission.belief_state import BeliefState, remaining_budget
 from mintpilot.mission.explanations import explanations
 from mintpilot.mission.looking import look_options
 from mintpilot.mission.nothing_done import nothing_done, sentence
+from mintpilot.mission.rule_progress import ruling
 from mintpilot.mission.unseen import SEARCH, with_search
 from mintpilot.reasoning.belief import extend
 from mintpilot.reasoning.waiting import longest_wait_s, spare_s
@@ -128,6 +129,11 @@ def deliberate(state: BeliefState, parts: DeliberationParts, *, start_m: Vec3, e
     return found
 
 
+def _moves(parts: DeliberationParts) -> bool:
+    """Whether it flies on while a question is open: not where rules say what may be flown in which order."""
+    return parts.settings.while_waiting is WhileWaiting.MOVE and not parts.task.rules
+
+
 def _left_s(decision: Decision) -> float:
     """Prices of what a decision to fly leaves undone; infinite where nothing is flown."""
     plan = decision.plan if isinstance(decision, Fly) else None
@@ -173,7 +179,7 @@ def decision_of(found: Deliberation, parts: DeliberationParts, explained: frozen
         alternatives=choice.alternatives,
         bound_bits=choice.bound_bits,
         waits_s=longest_wait_s(cautious_plan(situation), situation.problem.limits),
-        prospects=prospects_of(situation, choice.mint) if parts.settings.while_waiting is WhileWaiting.MOVE else (),
+        prospects=prospects_of(situation, choice.mint) if _moves(parts) else (),
     )
 
 
@@ -268,6 +274,7 @@ def _framed(
         prices=Prices(usual_s=parts.settings.failure_price_s, people_s=mission.people_price_s),
         belief=belief,
         home_m=mission.start_m if mission.returns is ReturnRule.REQUIRED else None,
+        ruling=ruling(parts.task, state.progress, state.map, findings.stops),
     )
     return state, findings, problem
 

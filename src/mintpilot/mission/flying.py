@@ -13,6 +13,7 @@ from mintpilot.core.plan import LeftUndone, Leg, Plan, Stop
 from mintpilot.core.task import Action
 from mintpilot.mission.outlasting import outlasted
 from mintpilot.mission.requests import Purpose
+from mintpilot.mission.rule_progress import done
 from mintpilot.mission.state import Activity, Ending, Goal, uncertain_things
 from mintpilot.mission.surveying import SWEEP_RAD, turn
 from mintpilot.mission.transition import Transition, partial_reason
@@ -44,13 +45,13 @@ def next_leg(t: Transition) -> None:
     if plan is not None and t.state.leg < len(plan.legs):
         t.request(Purpose.LEG, plan.legs[t.state.leg])
         return
-    done = _done(t)
+    ending = _done(t)
     returns = t.state.setup.lands or t.state.setup.mission.returns is not ReturnRule.NONE
     if t.state.is_down(Link.OPERATOR) or returns:
-        t.set(ending=done)
+        t.set(ending=ending)
         t.redirect(Goal.RETURN)
         return
-    t.finish(done.outcome, done.reason)
+    t.finish(ending.outcome, ending.reason)
 
 
 def _done(t: Transition) -> Ending:
@@ -139,11 +140,16 @@ def fulfilled(t: Transition) -> None:
 
 def mark_done(t: Transition, stop: Stop) -> None:
     """A stop was done."""
+    task, setup = t.state.setup.task, t.state.setup
+    if task is not None and task.rules:
+        here = np.asarray(t.state.vehicle.position_m, float)
+        progress = done(task, t.beliefs.progress, t.beliefs.map, setup.mission.limits, stop, here)
+        t.set(beliefs=replace(t.beliefs, progress=progress))
     begun_s = t.state.clock_s if t.state.task_begun_s is None else t.state.task_begun_s
-    done = Achieved(n=stop.step, text=stop.text or stop.id, at_s=t.state.clock_s - begun_s)
+    achieved = Achieved(n=stop.step, text=stop.text or stop.id, at_s=t.state.clock_s - begun_s)
     t.set(
         beliefs=replace(t.beliefs, finished=t.beliefs.finished | {stop.id}),
-        achieved=(*t.state.achieved, done),
+        achieved=(*t.state.achieved, achieved),
     )
 
 

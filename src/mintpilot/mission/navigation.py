@@ -9,6 +9,7 @@ from mintpilot.core.errors import InfeasibleError
 from mintpilot.core.geometry import Bools, Floats, Ints, Vec3
 from mintpilot.core.mission import Mission
 from mintpilot.core.plan import Leg, VehicleLimits
+from mintpilot.core.rule import Ruling
 from mintpilot.core.semantic_map import Cell, Knowledge, SemanticMap
 from mintpilot.core.task import Action
 from mintpilot.core.trajectory import Trajectory, VehicleState
@@ -18,6 +19,7 @@ from mintpilot.planning.checks import check_path, check_trajectory
 from mintpilot.planning.flyable import known_flyable
 from mintpilot.planning.grid_search import distance_field
 from mintpilot.planning.reach import LookAround, next_view, way_to
+from mintpilot.planning.ruled_path import keeps_rules, ruled_path
 from mintpilot.planning.sight import inspect
 from mintpilot.planning.trajectory import plan_trajectory
 
@@ -30,26 +32,40 @@ MOST_UNREACHABLE = 40
 
 
 def leg_trajectory(
-    leg: Leg, map: SemanticMap, limits: VehicleLimits, vehicle: VehicleState, assume_passable: frozenset[str]
+    leg: Leg,
+    map: SemanticMap,
+    limits: VehicleLimits,
+    vehicle: VehicleState,
+    assume_passable: frozenset[str],
+    ruling: Ruling | None = None,
 ) -> FlyTrajectory | RefuseFlight:
-    """The checked trajectory of a leg from where the vehicle is, or why there is none."""
+    """The checked trajectory of a leg from where the vehicle is, or why there is none.
+
+    Under rules it comes to where they are along the leg's own path: where cut corners would not, that path is flown.
+    """
     believed = with_passable(map, assume_passable)
     path = np.vstack([np.asarray(vehicle.position_m, float), leg.path_m[1:]])
     refusal = check_path(path, believed, limits)
     if refusal:
         return RefuseFlight(reason=refusal)
-    try:
-        trajectory = plan_trajectory(
-            path,
-            map=believed,
-            limits=limits,
-            start_yaw_rad=vehicle.yaw_rad,
-            end_yaw_rad=_facing(leg, map, path[-1]),
-        )
-    except InfeasibleError as error:
-        return RefuseFlight(reason=str(error))
-    refusal = check_trajectory(trajectory, believed, limits)
-    return RefuseFlight(reason=refusal) if refusal else FlyTrajectory(trajectory=trajectory)
+    for shortcut in (True, False):
+        try:
+            trajectory = plan_trajectory(
+                path,
+                map=believed,
+                limits=limits,
+                start_yaw_rad=vehicle.yaw_rad,
+                end_yaw_rad=_facing(leg, map, path[-1]),
+                shortcut=shortcut,
+            )
+        except InfeasibleError as error:
+            return RefuseFlight(reason=str(error))
+        refusal = check_trajectory(trajectory, believed, limits)
+        if refusal:
+            return RefuseFlight(reason=refusal)
+        if ruling is None or keeps_rules(trajectory.position_m, ruling, map, limits, as_along_m=path):
+            return FlyTrajectory(trajectory=trajectory)
+    return RefuseFlight(reason="no motion along the way keeps the rules")
 
 
 def explore(
@@ -114,12 +130,28 @@ def explore(
 
 
 def way_home(
-    map: SemanticMap, limits: VehicleLimits, vehicle: VehicleState, start_m: Vec3, track_m: Floats
+    map: SemanticMap,
+    limits: VehicleLimits,
+    vehicle: VehicleState,
+    start_m: Vec3,
+    track_m: Floats,
+    ruling: Ruling | None = None,
 ) -> GoBack | RefuseFlight:
-    """The shortest way to the start through space known to be free; where there is none, the way that was flown."""
+    """The shortest way to the start through space known to be free; where there is none, the way that was flown.
+
+    One that keeps the rules goes first; where none does, the drone comes home all the same.
+    """
     here = np.asarray(vehicle.position_m)
     if float(np.linalg.norm(here - start_m)) <= ARRIVED_M:
         return GoBack(trajectory=None, duration_s=0.0)
+    if ruling is not None:
+        kept = ruled_path(map, limits, ruling, start_m=vehicle.position_m, goal_m=start_m)
+        for shortcut in (True, False):
+            if kept is None:
+                break
+            found = _checked(kept, map, limits, vehicle.yaw_rad, limits.cruise_mps, shortcut=shortcut)
+            if isinstance(found, Trajectory) and keeps_rules(found.position_m, ruling, map, limits, as_along_m=kept):
+                return GoBack(trajectory=found, duration_s=found.duration_s)
     reason = "no way to the start is known to be free"
     path = way_to(map, limits, start_m=vehicle.position_m, goal_m=start_m)
     for way in (path, np.vstack([here[None], track_m[::-1]]) if len(track_m) else None):
@@ -184,11 +216,13 @@ def landable_cells(map: SemanticMap, limits: VehicleLimits) -> Bools:
 
 
 def _checked(
-    path: Floats, map: SemanticMap, limits: VehicleLimits, yaw_rad: float, speed_mps: float
+    path: Floats, map: SemanticMap, limits: VehicleLimits, yaw_rad: float, speed_mps: float, *, shortcut: bool = True
 ) -> Trajectory | str:
     """The trajectory along a path, or why it may not be flown."""
     try:
-        trajectory = plan_trajectory(path, map=map, limits=limits, start_yaw_rad=yaw_rad, speed_mps=speed_mps)
+        trajectory = plan_trajectory(
+            path, map=map, limits=limits, start_yaw_rad=yaw_rad, speed_mps=speed_mps, shortcut=shortcut
+        )
     except InfeasibleError as error:
         return str(error)
     return check_trajectory(trajectory, map, limits) or trajectory

@@ -143,6 +143,7 @@ def setup_of(started: MissionStarted) -> Setup:
     """What a recorded mission began with."""
     return Setup(
         mission=started.mission,
+        task=started.task,
         surveys=started.surveys,
         simulated=started.simulated,
         lands=started.lands,

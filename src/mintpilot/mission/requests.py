@@ -14,6 +14,7 @@ from mintpilot.core.trajectory import VehicleState
 from mintpilot.mission.belief_state import BeliefState
 from mintpilot.mission.deliberation import DeliberationParts, mission_decision
 from mintpilot.mission.navigation import explore, leg_trajectory, way_home, way_to_land
+from mintpilot.mission.rule_progress import ruling
 from mintpilot.mission.way_back import is_stranded, way_back
 from mintpilot.planning.meanwhile import Wait, meanwhile
 
@@ -79,7 +80,8 @@ def decide(parts: DeliberationParts, request: Request) -> Decision:
     """
     map, limits, vehicle = request.state.map, parts.mission.limits, request.vehicle
     if request.purpose is Purpose.LEG and request.leg is not None:
-        return leg_trajectory(request.leg, map, limits, vehicle, request.assume_passable)
+        rules = ruling(parts.task, request.state.progress, map)
+        return leg_trajectory(request.leg, map, limits, vehicle, request.assume_passable, rules)
     if request.purpose is Purpose.MEANWHILE and request.wait is not None:
         return meanwhile(request.wait, map, limits, vehicle)
     if request.purpose is Purpose.SURVEY and request.survey is not None:
@@ -99,7 +101,8 @@ def decide(parts: DeliberationParts, request: Request) -> Decision:
         if out is not None:
             return FlyTrajectory(trajectory=out, retreat=True)
     if request.purpose is Purpose.RETURN:
-        return way_home(map, limits, vehicle, parts.mission.start_m, request.track_m)
+        rules = ruling(parts.task, request.state.progress, map)
+        return way_home(map, limits, vehicle, parts.mission.start_m, request.track_m, rules)
     if request.purpose is Purpose.LAND:
         return way_to_land(map, limits, vehicle)
     if request.purpose is Purpose.MISSION:

@@ -14,6 +14,7 @@ from mintpilot.core.mission import Achieved, Mission, Outcome, Verdict, Waiting
 from mintpilot.core.plan import LeftUndone, Plan, Prospect, Stop
 from mintpilot.core.query import Answer, Query, Question
 from mintpilot.core.semantic_map import SemanticMap
+from mintpilot.core.task import Task
 from mintpilot.core.told import Standing, ToldFact
 from mintpilot.core.trajectory import VehicleState
 from mintpilot.core.tree import GapExplanation, ScoredQuery
@@ -76,6 +77,8 @@ class Setup:
     """What stays the same for a whole mission."""
 
     mission: Mission
+    task: Task | None = None
+    """What is to be done, for its rules; None: there are none."""
     surveys: bool = False
     """True where the first map is made by a survey flight."""
     simulated: bool = False

@@ -16,6 +16,7 @@ from mintpilot.core.decisions import (
     RefuseFlight,
 )
 from mintpilot.core.gap import obstacle_id
+from mintpilot.core.geometry import Floats
 from mintpilot.core.inputs import (
     Answered,
     DeliberationEnded,
@@ -42,6 +43,7 @@ from mintpilot.mission.belief_state import BeliefState
 from mintpilot.mission.directives import Directive
 from mintpilot.mission.path_monitor import with_passable
 from mintpilot.mission.requests import Purpose
+from mintpilot.mission.rule_progress import flown
 from mintpilot.mission.state import Activity, Goal, MissionState, PendingRequest, Setup, uncertain_things
 from mintpilot.mission.transition import Transition
 from mintpilot.planning.checks import check_trajectory
@@ -192,6 +194,14 @@ def _observed(t: Transition, event: MapObserved) -> None:
             flying.watch(t, event)
 
 
+def _follow_rules(t: Transition, way_m: Floats) -> None:
+    """Takes what was flown since the task began into how far the rules have come."""
+    task, limits = t.state.setup.task, t.state.setup.mission.limits
+    if task is not None and task.rules and t.state.beliefs is not None and t.state.task_begun_s is not None:
+        after = flown(task, t.beliefs.progress, t.beliefs.map, limits, way_m)
+        t.set(beliefs=replace(t.beliefs, progress=after))
+
+
 def _seen_passable(t: Transition, event: MapObserved) -> frozenset[str]:
     """The obstacle gap that was just looked at, where its region was open and is seen to be passable."""
     plan, regions = t.state.plan, {obstacle_id(r.id): r.passable for r in event.map.regions}
@@ -211,6 +221,7 @@ def _motion_ended(t: Transition, event: MotionEnded) -> None:
     t.set(motion=None, activity=Activity.NONE)
     if event.log is not None and len(event.log.position_m):
         t.set(track=(*t.state.track, event.log.position_m[::10]))
+        _follow_rules(t, event.log.position_m)
     if event.end is MotionEnd.REFUSED:
         t.set(refusals=t.state.refusals + 1)
     if event.end is MotionEnd.FAILED or t.state.refusals >= MAX_REFUSALS:

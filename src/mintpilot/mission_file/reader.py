@@ -97,7 +97,9 @@ def json_schema() -> str:
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": "MintPilot mission file, version 1",
     }
-    return json.dumps({**head, **MissionFile.model_json_schema(), **head}, indent=2, ensure_ascii=False) + "\n"
+    schema = MissionFile.model_json_schema()
+    schema["$defs"]["RuleSpec"]["type"] = ["object", "string"]  # a formula may stand alone
+    return json.dumps({**head, **schema, **head}, indent=2, ensure_ascii=False) + "\n"
 
 
 def path_text(path: Path_) -> str:

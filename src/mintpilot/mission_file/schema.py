@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import ConfigDict, Field
+from pydantic import BeforeValidator, ConfigDict, Field
 
 from mintpilot.mission_file.schema_asking import asking_spec
 from mintpilot.mission_file.schema_base import (
@@ -27,6 +27,11 @@ from mintpilot.mission_file.schema_base import (
 from mintpilot.mission_file.schema_world import ValueSpec, World
 
 SCHEMA_VERSION = 1
+
+
+def _as_rule(value: object) -> object:
+    """A formula may stand alone."""
+    return {"formula": value} if isinstance(value, str) else value
 
 
 class VehicleSpec(Spec):
@@ -120,6 +125,8 @@ class GoalSpec(Spec):
     """How long the drone stays there, seconds."""
     price_s: NotNegative | None = None
     """What leaving it undone costs, seconds of flight; default: `asking.failure_price_s`."""
+    id: Name | None = None
+    """What `rules` call it by."""
     truth: Name | None = None
     """With a phrase: id of the object that is really meant, for a scripted operator; never used to plan."""
 
@@ -133,6 +140,32 @@ class KeepAwaySpec(Spec):
     """From what: `people`, words for things of a kind (`the barrels`), or the id of a region."""
     metres: Annotated[float, Field(gt=0, le=100)] = 2.0
     """How far, metres, between the drone's body and it."""
+
+
+class RuleSpec(Spec):
+    """What every flight keeps, as one pattern: `never`, `always`, `never` with `before`, `first` with `then`, `after`
+    with `eventually`, `end`, or `formula`. Each but the last takes one proposition: `in(REGION)`, `inside(REGION)`,
+    `touches(REGION)`, `within(THING, METRES)`, `at(GOAL)`, `did(GOAL)`, `looked(ROOM)`, `carrying(LABEL)`.
+    """
+
+    never: Words | None = None
+    """At no moment; with `before`: at no moment before that."""
+    before: Words | None = None
+    """Until when `never` counts."""
+    always: Words | None = None
+    """At every moment; `in(REGION)` then means with the whole body."""
+    first: Words | None = None
+    """With `then`: both, and this not after that."""
+    then: Words | None = None
+    """What comes after `first`."""
+    after: Words | None = None
+    """With `eventually`: whenever this holds."""
+    eventually: Words | None = None
+    """What holds at some time after `after`."""
+    end: Words | None = None
+    """At the last moment of the flight."""
+    formula: Words | None = None
+    """A rule in LTLf: `! & | -> G F U R` over the propositions. A rule may also be given as this text alone."""
 
 
 class LookSpec(Spec):
@@ -208,6 +241,8 @@ class MissionFile(Spec):
     """True when everybody who is hurt must be found. Default: as the instruction says."""
     keep_away: Several[KeepAwaySpec] = ()
     """Distances to be kept from people, things or regions, besides those that the instruction names."""
+    rules: Several[Annotated[RuleSpec, BeforeValidator(_as_rule)]] = ()
+    """What every flight keeps from take-off to its end. Hard: where a rule cannot be kept, stops are left undone."""
     looks: Several[LookSpec] = ()
     """From where regions can be looked at: a look competes with questions by what it tells a second
     (`asking.reply_s`). On given maps and with the kinematic simulator; a camera sees by itself."""

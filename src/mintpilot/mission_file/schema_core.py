@@ -105,6 +105,7 @@ def task_of(file: MissionFile, *, layer_m: float = 0.0) -> Task | None:
                 reference=_reference(goal, viewpoints, words, layer_m),
                 dwell_s=goal.dwell_s,
                 price_s=goal.price_s,
+                id=goal.id or "",
             )
             for goal in file.goals
         ),

@@ -10,6 +10,7 @@ from pathlib import Path
 from mintpilot.core.gap import ABSENT, BLOCKED, PASSABLE, PRESENT, GapKind, kind_of, obstacle_id, presence_id
 from mintpilot.core.tolerances import SUM_TOLERANCE
 from mintpilot.mission_file.form_checks import nearest, show
+from mintpilot.mission_file.ruling import rule_faults
 from mintpilot.mission_file.schema import CorrelationSpec, GoalSpec, MissionFile
 from mintpilot.mission_file.schema_world import MapWorld, SceneWorld, SeenWorld
 from mintpilot.mission_file.semantic_checks_map import map_faults
@@ -26,6 +27,7 @@ def contradictions(mission: MissionFile, base: Path) -> Iterator[Fault]:
     yield from _goal_faults(mission)
     yield from _truth_faults(mission)
     yield from _correlation_faults(mission)
+    yield from rule_faults(mission)
     yield from value_faults(mission)
     yield from _look_faults(mission)
     if isinstance(mission.world, MapWorld | SeenWorld) and mission.survey is not None:

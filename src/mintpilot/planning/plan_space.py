@@ -12,6 +12,7 @@ from mintpilot.core.ports import PlanSpace
 from mintpilot.planning.itinerary import itinerary_of, needed_value
 from mintpilot.planning.legs import LegTable, PathSearch
 from mintpilot.planning.route import Route
+from mintpilot.planning.ruled_selection import RuledSelector
 from mintpilot.planning.selection import NOT_SETTLED, Selection, Selector
 from mintpilot.planning.terrain import Terrain
 
@@ -50,7 +51,9 @@ class GridPlanSpace(PlanSpace):
         self.itinerary = itinerary_of(problem, terrain)
         self._search = search
         self._legs = LegTable(search)
-        self._selector = Selector(self.itinerary, self._legs)
+        self._selector: Selector | RuledSelector = Selector(self.itinerary, self._legs)
+        if problem.ruling is not None:
+            self._selector = RuledSelector(self._selector, problem.ruling)
         self._gaps = {g.id: g for g in problem.gaps}
         self._made: dict[_Case, Plan | None] = {}
 

@@ -88,13 +88,13 @@ class Selector:
     """
 
     def __init__(self, itinerary: Itinerary, legs: LegTable) -> None:
-        self._itinerary, self._legs = itinerary, legs
+        self.itinerary, self.legs = itinerary, legs
         self._limits = itinerary.problem.limits
         self.notes: set[str] = set()
         self._flights: dict[tuple[Cell3, Cell3, int], float] = {}
         middle = itinerary.terrain.frame.centres_of(np.array([itinerary.start]))[0]
         # From the true start to the middle of its cell.
-        self._start_s = float(np.linalg.norm(middle - itinerary.problem.start_m)) / self._limits.cruise_mps
+        self.start_s = float(np.linalg.norm(middle - itinerary.problem.start_m)) / self._limits.cruise_mps
 
     @property
     def battery_s(self) -> float:
@@ -103,10 +103,10 @@ class Selector:
 
     def fits_alone(self, stop: Stop, blocked: int) -> bool:
         """Whether this stop can be reached, and the battery suffices for it if nothing else is done."""
-        place = self._itinerary.place(stop, {})
+        place = self.itinerary.place(stop, {})
         if place is None or not np.isfinite(self.battery_s):
             return place is not None
-        there_s = self._start_s + self._flight_s(self._itinerary.start, place, blocked) + stop.dwell_s
+        there_s = self.start_s + self._flight_s(self.itinerary.start, place, blocked) + stop.dwell_s
         return there_s + self._home_s(place, blocked) <= self.battery_s + TOLERANCE
 
     def select(
@@ -120,7 +120,7 @@ class Selector:
             blocked: bit set of the regions to keep out of.
             uncertain: those still open: at equal cost, fewer of them are entered.
         """
-        wanted = (*self._itinerary.ordered, *visits)
+        wanted = (*self.itinerary.ordered, *visits)
         if not wanted:
             return Selection(stops=(), route=Route(cost=0.0, mask=0, order=(), paths=()), left=(), left_s=0.0)
         found = self._reachable(wanted, values, blocked)
@@ -148,29 +148,29 @@ class Selector:
         self, found: _Reachable, numbers: Sequence[int], route: Route, blocked: int, uncertain: int
     ) -> tuple[int, float]:
         """The regions that the way home enters, as few uncertain ones as the battery allows; and its seconds."""
-        if self._itinerary.problem.home_m is None or self._itinerary.home is None or not route.order:
+        if self.itinerary.problem.home_m is None or self.itinerary.home is None or not route.order:
             return 0, 0.0
         left_s = self.battery_s - self._route_s(found, numbers, route)
         last = found.places[numbers[route.order[-1]]]
         ways = [
             way
-            for way in self._legs.between(last, self._itinerary.home).paths
-            if not way.mask & blocked and way.cost * self._itinerary.edge_s <= left_s + TOLERANCE
+            for way in self.legs.between(last, self.itinerary.home).paths
+            if not way.mask & blocked and way.cost * self.itinerary.edge_s <= left_s + TOLERANCE
         ]
         rank = lambda way: ((way.mask & uncertain).bit_count(), round(way.cost, 9), way.mask)  # noqa: E731
         if not ways:
             return 0, 0.0
         way = min(ways, key=rank)
-        return way.mask, way.cost * self._itinerary.edge_s
+        return way.mask, way.cost * self.itinerary.edge_s
 
     def _reachable(self, wanted: Sequence[Stop], values: Mapping[str, str], blocked: int) -> _Reachable:
-        here = self._itinerary.start
-        places = {stop.id: self._itinerary.place(stop, values) for stop in wanted}
+        here = self.itinerary.start
+        places = {stop.id: self.itinerary.place(stop, values) for stop in wanted}
         stops: list[Stop] = []
         needs: list[int] = []
         for stop in wanted:
             place = places[stop.id]
-            pick = _picked_for(stop, self._itinerary.ordered)
+            pick = picked_for(stop, self.itinerary.ordered)
             ids = [s.id for s in stops]
             if place is None or not np.isfinite(self._flight_s(here, place, blocked)):
                 continue
@@ -180,7 +180,7 @@ class Selector:
             stops.append(stop)
         cells = [place for stop in stops if (place := places[stop.id]) is not None]
         stay = np.array([stop.dwell_s for stop in stops])
-        start = np.array([self._start_s + self._flight_s(here, cell, blocked) for cell in cells]) + stay
+        start = np.array([self.start_s + self._flight_s(here, cell, blocked) for cell in cells]) + stay
         apart = np.full((len(cells), len(cells)), np.inf)
         for i, one in enumerate(cells):
             for j, other in enumerate(cells):
@@ -270,7 +270,7 @@ class Selector:
             resource = Shortage.ANSWER
         elif values.get(stop.gap) in NOWHERE:
             resource = Shortage.UNSEEN
-        elif _picked_for(stop, self._itinerary.ordered) is not None and self._itinerary.place(stop, values):
+        elif picked_for(stop, self.itinerary.ordered) is not None and self.itinerary.place(stop, values):
             resource = Shortage.THING
         return LeftUndone(stop=stop, resource=resource)
 
@@ -278,33 +278,33 @@ class Selector:
         self, found: _Reachable, numbers: Sequence[int], blocked: int, uncertain: int, *, fixed: bool = False
     ) -> Route | None:
         ordered = len(numbers) if fixed else sum(i < found.ordered for i in numbers)
-        tour = Tour(start=self._itinerary.start, places=tuple(found.places[i] for i in numbers), ordered=ordered)
-        stay_s = self._start_s + sum(found.stops[i].dwell_s for i in numbers)
+        tour = Tour(start=self.itinerary.start, places=tuple(found.places[i] for i in numbers), ordered=ordered)
+        stay_s = self.start_s + sum(found.stops[i].dwell_s for i in numbers)
         home_s = {found.places[i]: float(found.home_s[i]) for i in numbers}
 
         def most(last: Cell3) -> float:
-            return (self.battery_s - stay_s - home_s[last]) / self._itinerary.edge_s
+            return (self.battery_s - stay_s - home_s[last]) / self.itinerary.edge_s
 
-        return best_route(self._legs, tour, blocked, uncertain, most)
+        return best_route(self.legs, tour, blocked, uncertain, most)
 
     def _route_s(self, found: _Reachable, numbers: Sequence[int], route: Route) -> float:
-        return self._start_s + route.cost * self._itinerary.edge_s + sum(found.stops[i].dwell_s for i in numbers)
+        return self.start_s + route.cost * self.itinerary.edge_s + sum(found.stops[i].dwell_s for i in numbers)
 
     def _home_s(self, cell: Cell3, blocked: int) -> float:
-        if self._itinerary.problem.home_m is None:
+        if self.itinerary.problem.home_m is None:
             return 0.0
-        home = self._itinerary.home
+        home = self.itinerary.home
         return float("inf") if home is None else self._flight_s(cell, home, blocked)
 
     def _flight_s(self, one: Cell3, other: Cell3, blocked: int) -> float:
         key = (one, other, blocked)
         if key not in self._flights:
-            way = self._legs.between(one, other).best(blocked)
-            self._flights[key] = float("inf") if way is None else way.cost * self._itinerary.edge_s
+            way = self.legs.between(one, other).best(blocked)
+            self._flights[key] = float("inf") if way is None else way.cost * self.itinerary.edge_s
         return self._flights[key]
 
 
-def _picked_for(stop: Stop, ordered: Sequence[Stop]) -> Stop | None:
+def picked_for(stop: Stop, ordered: Sequence[Stop]) -> Stop | None:
     """What must have been picked up for a delivery: the last pick before it, None where there is none."""
     if stop.action is not Action.DELIVER or stop.optional:
         return None

@@ -28,6 +28,7 @@ def plan_trajectory(
     end_yaw_rad: float | None = None,
     sample_s: float = 0.02,
     speed_mps: float | None = None,
+    shortcut: bool = True,
 ) -> Trajectory:
     """A smooth motion along the path, at rest at both ends, that keeps the clearance from all not known passable.
 
@@ -48,6 +49,7 @@ def plan_trajectory(
         end_yaw_rad: heading at the end; None: whatever the motion leaves.
         sample_s: time between samples, at most 0.1 s.
         speed_mps: instead of ``limits.cruise_mps``.
+        shortcut: False flies along the path itself, stopping at its corners.
 
     Raises:
         InputError: an argument is not finite or out of range.
@@ -66,7 +68,7 @@ def plan_trajectory(
     if problem:
         raise InfeasibleError(f"this path cannot be flown: {problem}. Plan again on the present map")
     sight = Sight(map, limits, path)
-    corners, stops = _corners(path, sight)
+    corners, stops = _corners(path, sight) if shortcut else _as_it_is(path)
     yaw_ends = (start_yaw_rad, end_yaw_rad)
     if len(corners) < 2:
         still = np.zeros((1 + int(np.ceil(0.2 / sample_s)), 3))
@@ -102,6 +104,16 @@ def _corners(path: Floats, sight: Sight) -> tuple[Floats, int]:
     while first < len(path) - 1 and not sight.clear(path[first], path[first]):
         first += 1
     return np.concatenate([path[:first], sight.shortcut(path[first:])]), first
+
+
+def _as_it_is(path: Floats) -> tuple[Floats, int]:
+    """The path without way-points on a straight line; all its corners must be stopped at."""
+    if len(path) < 3:
+        return path, 0
+    steps = np.diff(path, axis=0)
+    steps /= np.linalg.norm(steps, axis=1)[:, None]
+    turns = np.linalg.norm(np.diff(steps, axis=0), axis=1) > 1e-6
+    return path[np.concatenate([[True], turns, [True]])], int(turns.sum())
 
 
 def _clear_motion(

@@ -30,6 +30,7 @@ OUTCOME_WORDS: dict[Outcome, str] = {
     Outcome.NO_SAFE_PLAN: "Not flown: no safe way was known",
     Outcome.ABORTED: "Ended before it was finished",
     Outcome.VEHICLE_FAILED: "Failed: the vehicle or its link failed",
+    Outcome.RULE_BROKEN: "Failed: a rule of the mission was broken",
     Outcome.NOT_REACHED: "Failed: not every goal was reached",
 }
 """How a mission ended."""

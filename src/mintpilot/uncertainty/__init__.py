@@ -2,5 +2,6 @@
 
 from mintpilot.uncertainty.findings import Findings, find_gaps, frame_problem
 from mintpilot.uncertainty.keep_away import with_keep_away
+from mintpilot.uncertainty.ruling import letters_of, ruling_of
 
-__all__ = ["Findings", "find_gaps", "frame_problem", "with_keep_away"]
+__all__ = ["Findings", "find_gaps", "frame_problem", "letters_of", "ruling_of", "with_keep_away"]

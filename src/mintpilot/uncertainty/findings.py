@@ -11,6 +11,7 @@ from mintpilot.core.gap import PRESENT, Belief, GapKind, KnowledgeGap
 from mintpilot.core.geometry import Vec3
 from mintpilot.core.observation import PERSON, RegionKind
 from mintpilot.core.plan import PRICE_S, PlanningProblem, Stop, VehicleLimits
+from mintpilot.core.rule import Ruling
 from mintpilot.core.semantic_map import Knowledge, Region, SemanticMap
 from mintpilot.core.task import Task
 from mintpilot.uncertainty.describing import describe, place
@@ -126,6 +127,7 @@ def frame_problem(
     prices: Prices | None = None,
     belief: Belief | None = None,
     home_m: Vec3 | None = None,
+    ruling: Ruling | None = None,
 ) -> PlanningProblem:
     """Puts map, findings and vehicle into the form that a planner takes.
 
@@ -139,6 +141,7 @@ def frame_problem(
         prices: of leaving stops undone; None: `PRICE_S` each.
         belief: says how likely it is that somebody is in a room; None: as the gaps' priors say.
         home_m: where the drone must be able to return to, metres; None: nowhere.
+        ruling: the rules to be kept; None: there are none.
 
     Raises:
         InputError: nothing of the task can be done, since its phrases match nothing that was seen.
@@ -157,6 +160,7 @@ def frame_problem(
         limits=limits,
         finished=finished,
         home_m=home_m,
+        ruling=ruling,
     )
 
 

@@ -71,7 +71,7 @@ def _cells(wish: KeepAway, map: SemanticMap, task: Task, view: Standpoint) -> In
     goals = _goals(task, things, view)
     for thing in _meant(wish, things, view):
         if thing.id not in goals:
-            near |= _around_box(map, _box(thing), wish.distance_m)
+            near |= around_box(map, box_of(thing), wish.distance_m)
     return np.flatnonzero(near).astype(np.int64)
 
 
@@ -95,13 +95,14 @@ def _goals(task: Task, things: tuple[Thing, ...], view: Standpoint) -> frozenset
     return frozenset(found)
 
 
-def _box(thing: Thing) -> Box:
+def box_of(thing: Thing) -> Box:
+    """The box that a thing fills."""
     half = tuple(edge / 2 for edge in thing.size_m)
     (x, y, z), (dx, dy, dz) = thing.position_m, half
     return Box(lo_m=(x - dx, y - dy, z - dz), hi_m=(x + dx, y + dy, z + dz))
 
 
-def _around_box(map: SemanticMap, box: Box, distance_m: float) -> Bools:
+def around_box(map: SemanticMap, box: Box, distance_m: float) -> Bools:
     """Cells of which some point is nearer than the distance to the box; heights do not count on a flat map."""
     frame, half = map.frame, map.frame.resolution_m / 2
     squared = np.zeros(frame.shape)

@@ -1,0 +1,62 @@
+"""How far the rules have come: labels freeze when flown (method, section 14)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from mintpilot.core.geometry import Floats
+from mintpilot.core.plan import Stop, VehicleLimits
+from mintpilot.core.rule import Ruling
+from mintpilot.core.semantic_map import SemanticMap
+from mintpilot.core.task import Task
+from mintpilot.planning.rule_labels import RuleGrid
+from mintpilot.rules.compiling import compile_rules
+from mintpilot.uncertainty import letters_of, ruling_of
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RuleProgress:
+    """What was flown, as the rules see it."""
+
+    states: frozenset[int] = frozenset({0})
+    """Of the automaton of all rules together: those that the mission may be in."""
+    held: int = 0
+    """Bits of the propositions of stops that hold now."""
+
+
+def ruling(task: Task, progress: RuleProgress, map: SemanticMap, stops: tuple[Stop, ...] = ()) -> Ruling | None:
+    """The task's rules on that map, as far as they have come; None where there are none."""
+    if not task.rules:
+        return None
+    automaton = compile_rules(task.rules)
+    return ruling_of(map, task, automaton, stops, states=progress.states, held=progress.held)
+
+
+def flown(task: Task, progress: RuleProgress, map: SemanticMap, limits: VehicleLimits, way_m: Floats) -> RuleProgress:
+    """After a way (n, 3), metres."""
+    rules = ruling(task, progress, map)
+    if rules is None or not len(way_m):
+        return progress
+    grid = RuleGrid(ruling=rules, map=map, limits=limits)
+    states = progress.states
+    for kind in grid.kinds_along(way_m):
+        yes, may = grid.labels[kind]
+        states = rules.automaton.after(states, yes | progress.held, may | progress.held)
+    return RuleProgress(states=states, held=progress.held)
+
+
+def done(
+    task: Task, progress: RuleProgress, map: SemanticMap, limits: VehicleLimits, stop: Stop, at_m: Floats
+) -> RuleProgress:
+    """After a stop was done at that place (3,)."""
+    rules = ruling(task, progress, map)
+    if rules is None:
+        return progress
+    grid = RuleGrid(ruling=rules, map=map, limits=limits)
+    letters = letters_of(stop, map, task, rules.automaton)
+    kind = grid.kinds_along(at_m[None])[0]
+    yes, may = grid.labels[kind]
+    states, held = progress.states, progress.held
+    for held_now in (held | letters.at, ((held | letters.begins) & ~letters.ends) | letters.at):
+        states = rules.automaton.after(states, yes | held_now, may | held_now)
+    return RuleProgress(states=states, held=(held | letters.begins) & ~letters.ends)

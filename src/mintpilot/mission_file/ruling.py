@@ -1,0 +1,101 @@
+"""The rules of a mission file: patterns → core's rules, and every mistake in them (method, section 14)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+
+from mintpilot.core.errors import MintPilotError
+from mintpilot.core.observation import RegionKind
+from mintpilot.core.rule import About, Rule
+from mintpilot.mission_file.form_checks import nearest
+from mintpilot.mission_file.schema import MissionFile, RuleSpec
+from mintpilot.mission_file.schema_world import MapWorld
+from mintpilot.mission_file.yaml_places import Fault, Path_
+from mintpilot.rules import patterns
+from mintpilot.rules.formula import propositions_of
+from mintpilot.rules.parsing import parse, proposition
+from mintpilot.rules.satisfying import conflicting, is_trivial
+
+_PATTERNS: dict[frozenset[str], Callable[[RuleSpec], Rule]] = {
+    frozenset({"never"}): lambda s: patterns.never(proposition(s.never or "")),
+    frozenset({"always"}): lambda s: patterns.always_(proposition(s.always or "")),
+    frozenset({"never", "before"}): lambda s: patterns.never_before(
+        proposition(s.never or ""), proposition(s.before or "")
+    ),
+    frozenset({"first", "then"}): lambda s: patterns.first_then(proposition(s.first or ""), proposition(s.then or "")),
+    frozenset({"after", "eventually"}): lambda s: patterns.after_eventually(
+        proposition(s.after or ""), proposition(s.eventually or "")
+    ),
+    frozenset({"end"}): lambda s: patterns.at_end(proposition(s.end or "")),
+    frozenset({"formula"}): lambda s: patterns.written(s.formula or ""),
+}
+
+
+def rules_of(file: MissionFile) -> tuple[Rule, ...]:
+    """The rules of a mission file that was checked."""
+    return tuple(_PATTERNS[_keys(spec)](spec) for spec in file.rules)
+
+
+def rule_faults(file: MissionFile) -> Iterator[Fault]:
+    """Every mistake in the rules: patterns, formulas, names, and rules that cannot be kept or say nothing."""
+    rules: list[Rule] = []
+    for index, spec in enumerate(file.rules):
+        path: Path_ = ("rules", index)
+        if _keys(spec) not in _PATTERNS:
+            known = "; ".join(" with ".join(sorted(keys)) for keys in _PATTERNS)
+            yield _fault(path, f"{' with '.join(sorted(_keys(spec))) or 'nothing'} is no rule; known: {known}")
+            continue
+        try:
+            rule = _PATTERNS[_keys(spec)](spec)
+            faults = list(_name_faults(file, rule, path))
+            if not faults and is_trivial(rule):
+                faults = [_fault(path, f"'{rule.text}' is kept by every flight: it says nothing; remove it")]
+        except MintPilotError as error:
+            faults = [_fault(path, str(error))]
+        yield from faults
+        rules += [] if faults else [rule]
+    if len(rules) == len(file.rules):
+        yield from _conflict(rules)
+
+
+def _conflict(rules: list[Rule]) -> Iterator[Fault]:
+    try:
+        found = conflicting(rules)
+    except MintPilotError as error:
+        yield _fault(("rules",), str(error))
+        return
+    if found:
+        words = " and ".join(f"'{rule.text}'" for rule in found)
+        together = "contradict each other" if len(found) > 1 else "contradicts itself"
+        yield _fault(
+            ("rules", rules.index(found[-1])), f"{words} {together}: no flight can keep this; change or remove one"
+        )
+
+
+def _name_faults(file: MissionFile, rule: Rule, path: Path_) -> Iterator[Fault]:
+    goals = [goal.id for goal in file.goals or () if goal.id is not None]
+    kinds = [str(kind) for kind in RegionKind]
+    on_map = isinstance(file.world, MapWorld)
+    regions = [r.id for r in file.world.regions] + kinds if isinstance(file.world, MapWorld) else []
+    rooms = [r.id for r in file.world.rooms] if isinstance(file.world, MapWorld) else []
+    for what in sorted(propositions_of(parse(rule.formula))):
+        noun, known = "region", regions
+        match what.about:
+            case About.AT | About.DID:
+                noun, known = "goal with the id", goals
+            case About.LOOKED:
+                noun, known = "room", rooms
+            case About.WITHIN | About.CARRYING:
+                continue
+            case _:
+                pass
+        if what.subject not in known and (on_map or noun.startswith("goal")):
+            yield _fault(path, f"{what}: there is no {noun} '{what.subject}'; {nearest(what.subject, known)}")
+
+
+def _keys(spec: RuleSpec) -> frozenset[str]:
+    return frozenset(key for key in RuleSpec.model_fields if getattr(spec, key) is not None)
+
+
+def _fault(path: Path_, message: str) -> Fault:
+    return Fault(path=path, line=None, message=message)

@@ -1,0 +1,135 @@
+"""Shortest ways in grid x automaton, from one place to all others: a search by buckets, exact."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from mintpilot.core.compiled import compiled
+from mintpilot.core.geometry import Floats, Ints
+from mintpilot.planning.lattice import Lattice, Words
+
+UNCERTAIN = 1e-9
+"""At equal length a way with fewer uncertain cells is taken: what each of them counts for, edges."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class RuledWays:
+    """Shortest ways from one place, by how far the rules have come."""
+
+    lattice: Lattice
+    start: int
+    """Row of the first node and set."""
+    sets: Ints
+    """(n,) numbers of the sets of states."""
+    cost: Floats
+    """(nodes x n,) edges; infinite where none leads."""
+    before: Ints
+    """(nodes x n,) the row that each is reached from."""
+
+    def at(self, node: int) -> list[tuple[int, float]]:
+        """(place in ``sets``, edges) for each set in which the node can be reached."""
+        row = self.cost[node * len(self.sets) : (node + 1) * len(self.sets)]
+        return [(int(i), float(row[i])) for i in np.flatnonzero(np.isfinite(row))]
+
+    def path(self, node: int, place: int) -> Ints:
+        """Cells (n, 3) of the way to a node in a set."""
+        count = len(self.sets)
+        rows = [node * count + place]
+        while rows[-1] != self.start:
+            rows.append(int(self.before[rows[-1]]))
+        nodes = np.array(rows[::-1], np.int64) // count
+        keep = np.concatenate([[True], np.diff(nodes) != 0])
+        return self.lattice.cells(nodes[keep])
+
+
+def ways_from(
+    lattice: Lattice, allowed: Words, node: int, sets: Ints, table: Ints, kinds: Ints, uncertain: Floats
+) -> RuledWays:
+    """Searches from a node in the first of the sets, whose label counts already.
+
+    Args:
+        lattice: the grid.
+        allowed: moves.
+        node: where to begin.
+        sets: (n,) numbers.
+        table: (n, labels) which set follows, -1: none.
+        kinds: (nodes,) label of each node; -1 for the rim.
+        uncertain: (nodes,) number of uncertain regions of each node.
+    """
+    count, size = len(sets), lattice.size
+    cost = np.full(size * count, np.inf)
+    before = np.full(size * count, -1, np.int64)
+    _spread(allowed, lattice.offset, lattice.moves.length, node * count, count, table, kinds, uncertain, cost, before)
+    return RuledWays(lattice=lattice, start=node * count, sets=sets, cost=cost, before=before)
+
+
+@compiled(error_model="numpy")
+def _spread(
+    allowed: Words,
+    offset: Ints,
+    length: Floats,
+    start: int,
+    count: int,
+    table: Ints,
+    kinds: Ints,
+    uncertain: Floats,
+    cost: Floats,
+    before: Ints,
+) -> None:
+    """No move is shorter than one edge: what is in a bucket an edge wide cannot better another in it."""
+    room = 1 << 14
+    row = np.empty(room, np.int64)
+    following = np.empty(room, np.int64)
+    head = np.full(4, -1, np.int64)
+    closed = np.zeros(cost.size, np.uint8)
+    cost[start] = 0.0
+    row[0], following[0], head[0] = start, -1, 0
+    used, spare, queued, bucket = 1, -1, 1, 0
+    while queued > 0:
+        entry = head[bucket & 3]
+        if entry < 0:
+            bucket += 1
+            continue
+        head[bucket & 3] = following[entry]
+        here = row[entry]
+        following[entry] = spare
+        spare = entry
+        queued -= 1
+        if closed[here] or int(cost[here]) != bucket:
+            continue
+        closed[here] = 1
+        node, state = here // count, here % count
+        word = allowed[node]
+        for k in range(offset.size):
+            if not word >> np.uint64(k) & np.uint64(1):
+                continue
+            there = node + offset[k]
+            after = table[state, kinds[there]]
+            if after < 0:
+                continue
+            to = there * count + after
+            far = cost[here] + length[k] + 1e-9 * uncertain[there]
+            if closed[to] or far >= cost[to] - 1e-13:
+                continue
+            cost[to] = far
+            before[to] = here
+            if spare >= 0:
+                new = spare
+                spare = following[spare]
+            else:
+                if used == room:
+                    room *= 2
+                    wider = np.empty(room, np.int64)
+                    wider[:used] = row
+                    row = wider
+                    wider = np.empty(room, np.int64)
+                    wider[:used] = following
+                    following = wider
+                new = used
+                used += 1
+            slot = int(far) & 3
+            row[new], following[new] = to, head[slot]
+            head[slot] = new
+            queued += 1

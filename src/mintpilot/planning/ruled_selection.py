@@ -1,0 +1,281 @@
+"""Which stops are done in which order where rules in time must be kept (method, section 14): stops x automaton."""
+
+from __future__ import annotations
+
+import heapq
+import itertools
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from mintpilot.core.geometry import Floats, Ints
+from mintpilot.core.plan import LeftUndone, Shortage, Site, Stop
+from mintpilot.core.rule import Ruling
+from mintpilot.core.task import Action
+from mintpilot.core.tolerances import TOLERANCE
+from mintpilot.planning.decision_list import ParetoPath
+from mintpilot.planning.lattice import cost_of_moves, lattice_of
+from mintpilot.planning.legs import Cell3
+from mintpilot.planning.overlay import closed_moves
+from mintpilot.planning.route import Route
+from mintpilot.planning.rule_labels import RuleGrid
+from mintpilot.planning.rule_search import RuledWays, ways_from
+from mintpilot.planning.selection import Selection, Selector, picked_for
+
+MAX_LABELS = 20_000
+"""So many (stops done, place, state of the rules) are followed before the best plan found so far is taken."""
+END = "end"
+"""Id of the stop at the place where the rules want the flight to end."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class _Label:
+    """One way of having come somewhere."""
+
+    cost_s: float
+    done: int
+    """Bit set of the stops done."""
+    order: tuple[int, ...]
+    place: Cell3
+    rules: int
+    """Number of the set of states, at the place and its stop."""
+    held: int
+    paths: tuple[ParetoPath[Ints], ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class _Ending:
+    """What follows the last stop."""
+
+    hop_s: float = 0.0
+    """Seconds to the place where the rules want the flight to end, where that is no stop."""
+    hop: ParetoPath[Ints] | None = None
+    home_s: float = 0.0
+    homeward: int = 0
+
+
+class RuledSelector:
+    """Chooses as `Selector` does among the plans that keep the rules.
+
+    What `Selector` chooses is taken where it keeps them: no plan is better. Otherwise stops and automaton are searched
+    together over ways in grid x automaton: exact up to `MAX_LABELS`; `notes` says so beyond.
+
+    Args:
+        plain: chooses without rules.
+        ruling: the rules.
+    """
+
+    def __init__(self, plain: Selector, ruling: Ruling) -> None:
+        self._plain, self._ruling = plain, ruling
+        self._itinerary = itinerary = plain.itinerary
+        terrain, problem = itinerary.terrain, itinerary.problem
+        self._grid = RuleGrid(ruling=ruling, map=problem.map, limits=problem.limits)
+        self._lattice = lattice_of(terrain.free)
+        every = np.arange(terrain.frame.size)
+        nodes = self._lattice.nodes_of_flat(every)
+        self._kinds = np.full(self._lattice.size, -1, np.int64)
+        self._kinds[nodes] = self._grid.kinds
+        self._regions = tuple(self._lattice.nodes_of_flat(r) for r in terrain.regions)
+        self._masks: Ints = np.zeros(terrain.frame.size, np.uint64)
+        for bit, cells in enumerate(terrain.regions):
+            self._masks[cells] |= np.uint64(1 << bit)
+        self._ways: dict[tuple[int, int, Cell3, int, int], RuledWays] = {}
+        self.searches = 0
+        self.notes: set[str] = plain.notes
+
+    def fits_alone(self, stop: Stop, blocked: int) -> bool:
+        """See `Selector.fits_alone`."""
+        return self._plain.fits_alone(stop, blocked)
+
+    def select(
+        self, values: Mapping[str, str], visits: Sequence[Stop], blocked: int, uncertain: int
+    ) -> Selection | None:
+        """The best that can be done under the rules; None where not one stop can be. See `Selector.select`."""
+        plain = self._plain.select(values, visits, blocked, uncertain)
+        if plain is None or self._keeps(plain):
+            return plain
+        return self._searched(plain, values, (*self._itinerary.ordered, *visits), blocked, uncertain)
+
+    def _begun(self) -> tuple[int, int]:
+        """Set of states and propositions held where the plan begins, its first cell counted."""
+        held = self._ruling.held
+        start = self._grid.number(self._ruling.states)
+        return self._grid.after(start, int(self._grid.kinds[self._flat(self._itinerary.start)]), held), held
+
+    def _keeps(self, found: Selection) -> bool:
+        """Whether a plan made without regard to rules keeps them, its way home included."""
+        rules, held = self._begun()
+        place = self._itinerary.start
+        for number, way in zip(found.route.order, found.route.paths, strict=True):
+            rules = self._grid.followed(rules, self._flats(way.path), held)
+            place = _cell(way.path[-1])
+            rules, held = self._grid.done(rules, self._flat(place), found.stops[number].id, held)
+        home = self._itinerary.home
+        if home is not None and found.route.order:
+            back = self._plain.legs.between(place, home).best(~found.homeward)
+            if back is not None:
+                rules = self._grid.followed(rules, self._flats(back.path), held)
+        return self._grid.is_kept(rules)
+
+    def _searched(
+        self, plain: Selection, values: Mapping[str, str], wanted: Sequence[Stop], blocked: int, uncertain: int
+    ) -> Selection | None:
+        places = [self._itinerary.place(stop, values) for stop in wanted]
+        ordered = sum(not stop.optional for stop in wanted)
+        prices = [stop.price_s * stop.chance for stop in wanted]
+        picks = [picked_for(stop, self._itinerary.ordered) for stop in wanted]
+        ids = [stop.id for stop in wanted]
+        needs = [None if pick is None else ids.index(pick.id) for pick in picks]
+        rules, held = self._begun()
+        if rules < 0:
+            return None
+        first = _Label(
+            cost_s=self._plain.start_s, done=0, order=(), place=self._itinerary.start, rules=rules, held=held, paths=()
+        )
+        heap: list[tuple[float, int, _Label]] = [(first.cost_s, 0, first)]
+        count, seen = itertools.count(1), set[tuple[int, Cell3, int, int]]()
+        best: tuple[tuple[float, ...], _Label, _Ending] | None = None
+        while heap:
+            cost_s, _, here = heapq.heappop(heap)
+            key = (here.done, here.place, here.rules, here.held)
+            if key in seen:
+                continue
+            if best is not None and round(cost_s, 6) > best[0][0]:
+                break
+            if len(seen) >= MAX_LABELS:
+                self.notes.add(f"more than {MAX_LABELS} combinations of stops and rules; the best plan found is taken")
+                break
+            seen.add(key)
+            if here.done:
+                end = self._ended(here, blocked, uncertain)
+                left_s = sum(p for i, p in enumerate(prices) if not here.done >> i & 1)
+                if end is not None:
+                    rank = (round(cost_s + end.hop_s + left_s, 6), left_s, cost_s)
+                    if best is None or rank < best[0]:
+                        best = (rank, here, end)
+            ways = self._from(here, blocked, uncertain)
+            for i, place in enumerate(places):
+                need = needs[i]
+                if place is None or here.done >> i & 1 or (need is not None and not here.done >> need & 1):
+                    continue
+                if i < ordered and here.done & ((1 << ordered) - 1) >> (i + 1) << (i + 1):
+                    continue
+                for state, _ in ways.at(self._lattice.node(place)):
+                    way = self._way(ways, place, state)
+                    after, held = self._grid.done(int(ways.sets[state]), self._flat(place), wanted[i].id, here.held)
+                    far_s = cost_s + way.cost * self._itinerary.edge_s + wanted[i].dwell_s
+                    if after < 0 or far_s > self._plain.battery_s + TOLERANCE:
+                        continue
+                    label = _Label(
+                        cost_s=far_s,
+                        done=here.done | 1 << i,
+                        order=(*here.order, i),
+                        place=place,
+                        rules=after,
+                        held=held,
+                        paths=(*here.paths, way),
+                    )
+                    heapq.heappush(heap, (far_s, next(count), label))
+        if best is None:
+            return None
+        return self._chosen(plain, wanted, best[1], best[2])
+
+    def _ended(self, here: _Label, blocked: int, uncertain: int) -> _Ending | None:
+        """How the flight may end after this; None: not with the rules kept."""
+        spare_s = self._plain.battery_s - here.cost_s + TOLERANCE
+        if self._itinerary.problem.home_m is None and self._grid.is_kept(here.rules):
+            return _Ending()
+        ways = self._from(here, blocked, uncertain)
+        kept = np.array([self._grid.is_kept(int(number)) for number in ways.sets])
+        cost = np.where(np.tile(kept, self._lattice.size), ways.cost, np.inf)
+        if self._itinerary.problem.home_m is not None:
+            if self._itinerary.home is None:
+                return None
+            first = self._lattice.node(self._itinerary.home) * len(kept)
+            row = first + int(np.argmin(cost[first : first + len(kept)]))
+        else:
+            row = int(np.argmin(np.round(cost, 6)))
+        if not np.isfinite(cost[row]) or cost[row] * self._itinerary.edge_s > spare_s:
+            return None
+        node, state = divmod(row, len(kept))
+        way = self._way(ways, _cell(self._lattice.cells(np.array([node]))[0]), state)
+        if self._itinerary.problem.home_m is None:
+            return _Ending(hop_s=way.cost * self._itinerary.edge_s, hop=way)
+        return _Ending(home_s=way.cost * self._itinerary.edge_s, homeward=way.mask)
+
+    def _chosen(
+        self,
+        plain: Selection,
+        wanted: Sequence[Stop],
+        label: _Label,
+        ending: _Ending,
+    ) -> Selection:
+        stops, paths = [wanted[i] for i in label.order], list(label.paths)
+        hop = ending.hop
+        if hop is not None:
+            x, y, z = (float(v) for v in self._itinerary.terrain.frame.centres_of(hop.path[-1:])[0])
+            site = Site(position_m=(x, y, z), label=END)
+            stops.append(Stop(id=END, action=Action.GO, sites=(site,), dwell_s=0.0, price_s=0.0,
+                              text="end the flight where the rules want it"))  # fmt: skip
+            paths.append(hop)
+        done = {stop.id for stop in stops}
+        why = {one.stop.id: one for one in plain.left}
+        rules = tuple(rule.text for rule in self._ruling.rules)
+        left = tuple(
+            why.get(stop.id) or LeftUndone(stop=stop, resource=Shortage.RULE, rules=rules)
+            for stop in wanted
+            if stop.id not in done
+        )
+        mask = 0
+        for way in paths:
+            mask |= way.mask
+        route = Route(
+            cost=float(sum(way.cost for way in paths)), mask=mask, order=tuple(range(len(stops))), paths=tuple(paths)
+        )
+        return Selection(
+            stops=tuple(stops),
+            route=route,
+            left=left,
+            left_s=float(sum(one.stop.price_s * one.stop.chance for one in left)),
+            homeward=ending.homeward,
+            home_s=ending.home_s,
+        )
+
+    def _from(self, here: _Label, blocked: int, uncertain: int) -> RuledWays:
+        key = (blocked, uncertain, here.place, here.rules, here.held)
+        if key not in self._ways:
+            cell = self._flat(here.place)
+            left = self._grid.after(here.rules, int(self._grid.kinds[cell]), here.held)
+            sets, table = self._grid.table(left, here.held)
+            closed = [r for i, r in enumerate(self._regions) if blocked >> i & 1]
+            doubtful: Floats = np.zeros(self._lattice.size)
+            for i, nodes in enumerate(self._regions):
+                doubtful[nodes] += uncertain >> i & 1
+            allowed = closed_moves(self._lattice, self._lattice.allowed, closed)
+            node = self._lattice.node(here.place)
+            if any(node in region for region in closed):
+                allowed = np.zeros_like(allowed)
+            self.searches += 1
+            self._ways[key] = ways_from(self._lattice, allowed, node, sets, table, self._kinds, doubtful)
+        return self._ways[key]
+
+    def _way(self, ways: RuledWays, place: Cell3, state: int) -> ParetoPath[Ints]:
+        cells = ways.path(self._lattice.node(place), state)
+        kinds = np.bincount(np.abs(np.diff(cells, axis=0)).sum(axis=1), minlength=4)
+        corners = [np.where(np.array(pick, bool), cells[1:], cells[:-1]) for pick in np.ndindex(2, 2, 2)]
+        swept = np.concatenate([cells[:1], *corners])
+        mask = int(np.bitwise_or.reduce(self._masks[self._flats(swept)]))
+        return ParetoPath(cost=cost_of_moves(kinds), mask=mask, path=cells)
+
+    def _flats(self, cells: Ints) -> Ints:
+        flat: Ints = np.ravel_multi_index(tuple(cells.T), self._itinerary.terrain.frame.shape).astype(np.int64)
+        return flat
+
+    def _flat(self, cell: Cell3) -> int:
+        return int(self._flats(np.array([cell], np.int64))[0])
+
+
+def _cell(cell: Ints) -> Cell3:
+    z, y, x = (int(i) for i in cell)
+    return (z, y, x)

@@ -1,0 +1,1 @@
+"""Rules in time: formulas, patterns, automata, conflicts, and their truth along a flight (method, section 14)."""

@@ -1,0 +1,117 @@
+"""Rules bound to map and task: which cells and which stops their propositions speak of (method, section 14)."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+
+import numpy as np
+
+from mintpilot.core.geometry import Ints
+from mintpilot.core.plan import Stop
+from mintpilot.core.rule import About, Automaton, Proposition, Ruling, StopLetters
+from mintpilot.core.semantic_map import SemanticMap
+from mintpilot.core.task import Action, Task
+from mintpilot.uncertainty.gaps import LOOK_REACH_M, look_id
+from mintpilot.uncertainty.keep_away import around_box, box_of
+from mintpilot.uncertainty.things import things_of
+
+_TOUCHING_M = 1e-6
+
+
+def ruling_of(
+    map: SemanticMap,
+    task: Task,
+    automaton: Automaton,
+    stops: Iterable[Stop],
+    *,
+    states: frozenset[int] = frozenset({0}),
+    held: int = 0,
+) -> Ruling:
+    """The task's rules on that map.
+
+    Args:
+        map: what is believed of the world.
+        task: its ``rules``.
+        automaton: of these rules together.
+        stops: all that may be done.
+        states: of the automaton that the mission may be in.
+        held: bits of the propositions of stops that hold now.
+    """
+    letters = [(stop.id, letters_of(stop, map, task, automaton)) for stop in stops]
+    return Ruling(
+        rules=task.rules,
+        automaton=automaton,
+        cells=tuple(_cells(what, map) for what in automaton.propositions),
+        stops=tuple((name, one) for name, one in letters if one != StopLetters()),
+        states=states,
+        held=held,
+    )
+
+
+def letters_of(stop: Stop, map: SemanticMap, task: Task, automaton: Automaton) -> StopLetters:
+    """What doing a stop makes true and false."""
+    at = begins = ends = 0
+    for bit, what in enumerate(automaton.propositions):
+        flag = 1 << bit
+        match what.about:
+            case About.AT if _is_goal(stop, task, what.subject):
+                at |= flag
+            case About.DID if _is_goal(stop, task, what.subject):
+                begins |= flag
+            case About.LOOKED if stop.action is Action.LOOK and _is_room(stop, map, what.subject):
+                begins |= flag
+            case About.CARRYING if stop.action is Action.PICK and _is_thing(stop, task, what.subject):
+                begins |= flag
+            case About.CARRYING if stop.action is Action.DELIVER:
+                ends |= flag
+            case _:
+                pass
+    return StopLetters(at=at, begins=begins, ends=ends)
+
+
+def _goal_number(stop: Stop) -> int:
+    """Number of the sub-goal that a stop belongs to; 0: none."""
+    number = stop.id.split(":")[1:2]
+    return int(number[0]) if not stop.optional and number and number[0].isdigit() else 0
+
+
+def _is_goal(stop: Stop, task: Task, goal: str) -> bool:
+    number = _goal_number(stop)
+    return 0 < number <= len(task.subgoals) and task.subgoals[number - 1].id == goal
+
+
+def _is_room(stop: Stop, map: SemanticMap, room: str) -> bool:
+    if stop.id == look_id(room):
+        return True
+    viewpoints = [one.viewpoint_m for one in map.rooms if one.id == room]
+    return any(math.dist(site.position_m, at) <= LOOK_REACH_M for site in stop.sites for at in viewpoints)
+
+
+def _is_thing(stop: Stop, task: Task, label: str) -> bool:
+    number = _goal_number(stop)
+    if not 0 < number <= len(task.subgoals):
+        return False
+    goal = task.subgoals[number - 1]
+    taken = goal.thing or goal.reference
+    return label in (taken.label, taken.object_id) or label in taken.phrase.split()
+
+
+def _cells(what: Proposition, map: SemanticMap) -> Ints:
+    """Flat cells of the region, of all regions of that kind, of the things."""
+    if not what.about.spatial:
+        return np.zeros(0, np.int64)
+    regions = [r.cells for r in map.regions if what.subject in (r.id, str(r.kind))]
+    if regions or what.about is not About.WITHIN:
+        return np.unique(np.concatenate([np.zeros(0, np.int64), *regions]))
+    near = np.zeros(map.frame.shape, bool)
+    for thing in things_of(map):
+        if what.subject == thing.id or thing.label in _labels(what.subject):
+            near |= around_box(map, box_of(thing), _TOUCHING_M)
+    return np.flatnonzero(near).astype(np.int64)
+
+
+def _labels(subject: str) -> tuple[str, ...]:
+    """What things of that name are labelled: ``people``, ``barrels``, ``the box``."""
+    bare = subject.removeprefix("the ")
+    return ("person",) if bare in ("people", "persons") else (bare, bare.removesuffix("s"))

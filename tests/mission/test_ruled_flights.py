@@ -1,0 +1,121 @@
+"""Flights under rules in time, judged by LTLf's own definition on what was flown (method, section 14)."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from mintpilot.assembly.components import Choices, components_for
+from mintpilot.assembly.worlds import build_world
+from mintpilot.core.events import LegFlown
+from mintpilot.core.mission import Outcome
+from mintpilot.core.rule import About
+from mintpilot.mission.loop import fly_mission
+from mintpilot.mission_file.reader import read_mission
+from mintpilot.rules.monitor import truth
+from mintpilot.rules.parsing import parse
+
+ZONE_M = ((4.0, 0.0), (6.0, 5.0))
+RADIUS_M = 0.2
+FILE = """mintpilot: 1
+name: ruled
+instruction: two places
+world:
+  map: hall.map
+  resolution_m: 0.5
+  height_m: 1.0
+  start_m: [1.25, 1.25]
+  regions: [{{id: zone, description: the zone, passable: true, box: {{lo_m: [4, 0, 0], hi_m: [6, 5, 2]}}}}]
+goals: [{{action: go, position_m: [9.25, 1.25], id: far}}, {{action: go, position_m: [1.25, 7.25], id: near}}]
+vehicle: {{radius_m: 0.2, margin_m: 0.1, return: {returns}}}
+rules: [{rule}]
+"""
+
+
+class Listener:
+    """Keeps what was flown."""
+
+    def __init__(self):
+        self.flown = []
+
+    def record(self, event):
+        if isinstance(event, LegFlown):
+            self.flown.append(event)
+
+
+def fly(tmp_path, rule, *, returns="none"):
+    path, heard = tmp_path / "m.yaml", Listener()
+    (tmp_path / "hall.map").write_text("type octile\nheight 16\nwidth 24\nmap\n" + ("." * 24 + "\n") * 16)
+    path.write_text(FILE.format(rule=rule, returns=returns))
+    world = build_world(read_mission(path), base=tmp_path, seed=0)
+    with components_for(world, Choices(vehicle="kinematic"), operators=(), recorder=heard) as made:
+        verdict = fly_mission(made)
+    return world, verdict, heard.flown
+
+
+def is_kept(world, flown):
+    """Whether the flown flight keeps every rule, by exact distances and the definition of LTLf."""
+    where, done, at = [], [], []
+    finished: set[str] = set()
+    for leg in flown:
+        way = leg.log.position_m
+        names = {g.id for i, g in enumerate(world.task.subgoals, 1) if leg.stop_id.split(":")[1:2] == [str(i)]}
+        for i, point in enumerate([*way, way[-1]]):
+            there = i == len(way)
+            where.append(point)
+            finished = finished | names if there else finished
+            done.append(set(finished))
+            at.append(names if there else set())
+    points = np.array(where)
+    lo, hi = np.array(ZONE_M)
+    beyond = np.maximum(np.maximum(lo - points[:, :2], points[:, :2] - hi), 0)
+    away, depth = np.hypot(*beyond.T), np.minimum(points[:, :2] - lo, hi - points[:, :2]).min(axis=1)
+
+    def of(what):
+        match what.about:
+            case About.IN:
+                return depth >= 0
+            case About.INSIDE:
+                return depth >= RADIUS_M
+            case About.TOUCHES:
+                return away < RADIUS_M
+            case About.WITHIN:
+                return away <= what.metres + RADIUS_M
+            case About.DID:
+                return np.array([what.subject in x for x in done])
+            case _:
+                return np.array([what.subject in x for x in at])
+
+    return all(truth(parse(rule.formula), of, len(points))[0] for rule in world.task.rules)
+
+
+@pytest.mark.parametrize(
+    ("rule", "does"),
+    [
+        ("{never: touches(zone)}", ["far", "near"]),
+        ("{never: 'within(zone, 0.5)'}", ["far", "near"]),
+        ("{never: touches(zone), before: did(near)}", ["far", "near"]),
+        ("{first: did(far), then: in(zone)}", ["far", "near"]),
+        ("{after: at(near), eventually: in(zone)}", ["far", "near", "end"]),
+        ("{end: in(zone)}", ["far", "near", "end"]),
+        ("{never: at(far)}", ["near"]),
+        ("'(!in(zone) U did(near)) & F did(near)'", ["far", "near"]),
+    ],
+)
+@pytest.mark.parametrize("returns", ["none", "required"])
+def test_no_flight_breaks_a_rule(tmp_path, rule, does, returns):
+    world, verdict, flown = fly(tmp_path, rule, returns=returns)
+    names = {f"go:{i}": goal.id for i, goal in enumerate(world.task.subgoals, 1)}
+    if returns == "required" and "end: " in rule:
+        assert verdict.outcome is Outcome.NO_SAFE_PLAN
+        return
+    assert is_kept(world, flown), rule
+    came_to = [names.get(leg.stop_id, leg.stop_id) for leg in flown if leg.phase == "mission"]
+    assert came_to == [x for x in does if returns == "none" or x != "end"]
+    assert verdict.outcome is (Outcome.PARTIAL if does == ["near"] else Outcome.SUCCESS)
+
+
+def test_the_judge_of_these_tests_finds_a_broken_rule(tmp_path):
+    world, _, flown = fly(tmp_path, "{after: at(near), eventually: did(far)}")
+    assert is_kept(world, flown)
+    assert not is_kept(world, flown[1:])
