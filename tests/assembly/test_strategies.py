@@ -51,8 +51,8 @@ def test_the_seed_of_the_run_reaches_the_random_objective() -> None:
 
 def test_arguments_reach_the_strategy() -> None:
     made = make_strategy("knowno", seed=0, arguments={"quantile": 0.8})
-    assert isinstance(made.strategy.strategy.strategy, KnowNoStrategy)  # type: ignore[attr-defined]
-    assert made.strategy.strategy.strategy._quantile == 0.8  # type: ignore[attr-defined]
+    assert isinstance(made.strategy.strategy.strategy.strategy, KnowNoStrategy)  # type: ignore[attr-defined]
+    assert made.strategy.strategy.strategy.strategy._quantile == 0.8  # type: ignore[attr-defined]
     assert strategy_label("knowno", {"quantile": 0.8}) == "knowno quantile=0.8"
     assert strategy_label("mint") == "mint"
 

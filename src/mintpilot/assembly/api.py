@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, TypeAlias, cast
 
 from mintpilot.assembly.components import Choices, VehicleChoice, components_for, deliberation_parts, scripted_operator
 from mintpilot.assembly.deliberation_report import DeliberationReport, deliberation_report
-from mintpilot.assembly.earlier_map import earlier_map
 from mintpilot.assembly.policies import make_planner
 from mintpilot.assembly.registry import names
 from mintpilot.assembly.strategies import Argument, strategy_label
@@ -157,6 +156,8 @@ def run_mission(
     if think is not None:
         think_time(think)  # what cannot be read is told before anything is worked out
         file = file.model_copy(update={"operator": file.operator.model_copy(update={"latency_s": str(think)})})
+    if earlier is not None:
+        from mintpilot.assembly.earlier_map import earlier_map
     choices = Choices(
         strategy=strategy,
         strategy_arguments=_arguments(file, strategy, strategy_arguments),

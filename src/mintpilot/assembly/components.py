@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mintpilot.assembly.briefing import briefing_of
-from mintpilot.assembly.earlier_map import EarlierMap
 from mintpilot.assembly.policies import make_metric, make_planner
 from mintpilot.assembly.stated_looks import with_stated_looks
 from mintpilot.assembly.strategies import Argument, make_objective, make_strategy, strategy_label
@@ -32,6 +31,7 @@ from mintpilot.mission_file.schema import OperatorSpec
 from mintpilot.uncertainty.keep_away import with_keep_away
 
 if TYPE_CHECKING:
+    from mintpilot.assembly.earlier_map import EarlierMap
     from mintpilot.interaction.scripted import ScriptedOperator
     from mintpilot.mapping.builder import MapBuilder
     from mintpilot.simulation.kinematic import KinematicSimulator

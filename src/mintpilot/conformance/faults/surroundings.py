@@ -19,14 +19,23 @@ from mintpilot.conformance.faults.drawing import Draw
 from mintpilot.conformance.faults.kinds import FaultKind
 from mintpilot.conformance.faults.ledger import Counter, Ledger
 from mintpilot.core.errors import InfeasibleError
-from mintpilot.core.events import Deliberated, Event, LegFlown, MapUpdated, PlanChosen
+from mintpilot.core.events import (
+    Deliberated,
+    Event,
+    FactsChanged,
+    LegFlown,
+    MapUpdated,
+    PlanChosen,
+    QuestionTimed,
+    ViewTaken,
+)
 from mintpilot.core.inputs import DeliberationEnded
 from mintpilot.core.ports import Recorder
 from mintpilot.mission.requests import Request
 from mintpilot.mission.worker import Worker
 
-DERIVED = (MapUpdated, Deliberated, PlanChosen, LegFlown)
-"""What a run folder does not write as an event: it follows from the others."""
+UNWRITTEN = (MapUpdated, Deliberated, PlanChosen, LegFlown, FactsChanged, QuestionTimed, ViewTaken)
+"""What a run folder does not write as an event: it follows from the others, or is for those who watch."""
 SLOW_S = 0.004
 """Longest that a slow disk takes for a write."""
 SPARE_BYTES = 48 * 2**20
@@ -54,7 +63,7 @@ class CountingRecorder(Recorder):
         self._inner.record(event)
         self.last = event
         self._all += 1
-        if not isinstance(event, DERIVED):
+        if not isinstance(event, UNWRITTEN):
             self._events += 1
             self._written.set(self._events)
         killed = self._draw.first(FaultKind.KILLED)
