@@ -1,7 +1,7 @@
 """The styles there are, and what each may be used for.
 
-Rules of perception may be chosen on `TUNED` styles only. `HELD_BACK` styles are for measuring. Of these, `FRESH` ones
-were written by somebody who had not seen the rules.
+Rules of perception may be chosen on `TUNED` styles only. `HELD_BACK` styles are for measuring. `FRESH` ones were
+written by somebody who had not seen the rules; those of them that were measured first and then used are tuned now.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ from __future__ import annotations
 from mintpilot.simulation.furnished.fresh_styles import HOME, SCHOOL, WARD, WORKSHOP
 from mintpilot.simulation.furnished.style import CELLAR, CLINIC, OFFICE
 
-TUNED = {OFFICE.name: OFFICE}
+TUNED = {style.name: style for style in (OFFICE, SCHOOL, WORKSHOP, WARD)}
 FRESH = {style.name: style for style in (SCHOOL, WORKSHOP, HOME, WARD)}
-HELD_BACK = {style.name: style for style in (CLINIC, CELLAR)} | FRESH
+HELD_BACK = {style.name: style for style in (CLINIC, CELLAR, HOME)}
 STYLES = TUNED | HELD_BACK
