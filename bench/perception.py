@@ -109,8 +109,8 @@ FIRST_RUN = (
     "--style school --style workshop --style home --style ward --scenes 15 --seed 0`, 60 rooms) is the one that "
     "counts: people 0.644 [0.559, 0.720] of 132, doors 0.630 [0.521, 0.727] of 81, things 0.904 [0.849, 0.940] of 166, "
     "right names 0.879 of 58, false people 0, false doors 1.42 a room, calibration error 0.271. Nobody who bent over, "
-    "crawled, curled up or lay covered was found. After that school, workshop and ward were used to mend (other rooms than the "
-    "ones measured here), and home was not."
+    "crawled, curled up or lay covered was found. After that school, workshop and ward were used to mend (other rooms "
+    "than the ones measured here), and home was not."
 )
 """What was measured before the rules were changed; it cannot be measured again."""
 
