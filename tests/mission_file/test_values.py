@@ -41,6 +41,7 @@ def written(folder: Path, values: object, **region: object) -> Path:
 @pytest.mark.parametrize(
     ("change", "said"),
     [({"range": [2.0, 0.3]}, "must rise"), ({"range": [-1.0, 2.0]}, "must rise"), ({"truth": 3.0}, "not within"),
+     ({"prior": {"mean": 9.0, "sigma": 0.5}}, "mean 9 is not within the range"),
      ({"prior": [[3.0, 1.0]]}, "not within the range"), ({"prior": [[1.0, 0.4]]}, "must sum to 1"),
      ({"prior": [[1.0, 1.4], [1.1, -0.4]]}, "no probability"), ({"of": "smoke-9"}, "there is no region 'smoke-9'"),
      ({"what": "open_until"}, "clearance_m"), ({"truth": "three feet"}, "three feet"), ({"truth": "3,5 m"}, "3,5 m"),

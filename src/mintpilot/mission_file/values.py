@@ -100,6 +100,9 @@ def _range_faults(value: ValueSpec, path: Path_) -> Iterator[Fault]:
     if value.truth is not None and not least <= value.truth <= most:
         yield _fault((*path, "truth"), f"{value.truth:g} is not within the range [{least:g}, {most:g}]; metres")
     if isinstance(value.prior, NormalSpec):
+        if not least <= value.prior.mean <= most:
+            message = f"mean {value.prior.mean:g} is not within the range [{least:g}, {most:g}]; metres"
+            yield _fault((*path, "prior", "mean"), message)
         return
     for number, (point, chance) in enumerate(value.prior):
         if not least <= point <= most:
