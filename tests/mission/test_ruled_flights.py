@@ -6,9 +6,11 @@ import numpy as np
 import pytest
 
 from mintpilot.assembly.components import Choices, components_for
+from mintpilot.assembly.rule_judge import RuleJudge
 from mintpilot.assembly.worlds import build_world
-from mintpilot.core.events import LegFlown
-from mintpilot.core.mission import Outcome
+from mintpilot.core.events import LegFlown, OrderTaken
+from mintpilot.core.mission import Outcome, Verdict
+from mintpilot.core.query import Order
 from mintpilot.core.rule import About
 from mintpilot.mission.loop import fly_mission
 from mintpilot.mission_file.reader import read_mission
@@ -51,6 +53,55 @@ def fly(tmp_path, rule, *, returns="none"):
     with components_for(world, Choices(vehicle="kinematic"), operators=(), recorder=heard) as made:
         verdict = fly_mission(made)
     return world, verdict, heard.flown
+
+
+def judged(tmp_path, rule, flown, *, order=False):
+    """What the product's judge says of a flight, whatever rule it was flown under."""
+    path = tmp_path / "judged.yaml"
+    path.write_text(FILE.format(rule=rule, returns="none"))
+    world = build_world(read_mission(path), base=tmp_path, seed=0)
+    judge = RuleJudge(Pleased(), Listener(), world)
+    for event in flown:
+        judge.record(event)
+    if order:
+        judge.record(OrderTaken(order=Order.HOLD, operator="a", text="hold", answer="It holds.", time_s=1.0))
+    return judge.final()
+
+
+class Pleased:
+    """Finds nothing wrong."""
+
+    def verdict(self):
+        return None
+
+    def people(self):
+        return (0, 0)
+
+    def final(self):
+        return Verdict(outcome=Outcome.SUCCESS, reason="Every goal was reached.")
+
+
+@pytest.mark.parametrize(
+    ("rule", "kept"),
+    [
+        ("{never: touches(zone)}", False),
+        ("{never: in(zone)}", False),
+        ("{never: 'within(zone, 0.5)'}", False),
+        ("{never: touches(zone), before: did(near)}", False),
+        ("{first: did(far), then: did(near)}", True),
+        ("{first: did(near), then: did(far)}", False),
+        ("{end: in(zone)}", True),
+        ("{never: at(near)}", False),
+    ],
+)
+def test_the_judge_fails_a_flight_under_rules_that_it_breaks(tmp_path, rule, kept):
+    _, verdict, flown = fly(tmp_path, "{after: at(near), eventually: in(zone)}")
+    assert verdict.rules_broken == ()
+    found = judged(tmp_path, rule, flown)
+    assert found.outcome is (Outcome.SUCCESS if kept else Outcome.RULE_BROKEN)
+    assert bool(found.rules_broken) is not kept
+    ordered = judged(tmp_path, rule, flown, order=True)
+    assert (ordered.outcome, ordered.rules_broken) == (Outcome.SUCCESS, None), "orders go before rules"
 
 
 def is_kept(world, flown):

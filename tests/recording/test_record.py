@@ -39,6 +39,7 @@ KEYS = {
     "achieved",
     "left",
     "people",
+    "rules",
     "questions",
     "gaps",
     "waiting",

@@ -5,7 +5,7 @@ Nothing of planning is used: no automaton, no grid of labels; distances are exac
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -66,10 +66,13 @@ class RuleJudge(Judge, Recorder):
         """See `Judge.final`; a success under broken rules is none."""
         found = self.judge.final()
         failed = self.judge.verdict() is not None
-        broken = [] if failed or self._ordered or not self._where else self.broken()
-        if not broken:
+        if failed or self._ordered or not self._where:
             return found
-        return Verdict(outcome=Outcome.RULE_BROKEN, reason=f"it broke the rule: {'; '.join(broken)}")
+        broken = tuple(self.broken())
+        if not broken:
+            return replace(found, rules_broken=())
+        reason = f"it broke the rule: {'; '.join(broken)}"
+        return Verdict(outcome=Outcome.RULE_BROKEN, reason=reason, rules_broken=broken)
 
     def broken(self) -> list[str]:
         """Words of the rules that the flight so far has broken, if it ended now."""

@@ -326,3 +326,5 @@ class Verdict:
     left: tuple[Left, ...] = ()
     """What was to be done and was not."""
     waiting: Waiting = Waiting()
+    rules_broken: tuple[str, ...] | None = None
+    """Words of the rules that the flight broke; empty: it kept all; None: nobody judged that."""

@@ -17,6 +17,7 @@ from pydantic import JsonValue
 from mintpilot.core.events import Asked, Deliberated, LegFlown, PlanChosen
 from mintpilot.core.gap import GapKind, KnowledgeGap
 from mintpilot.core.mission import Outcome, Verdict
+from mintpilot.core.rule import Rule
 from mintpilot.core.semantic_map import SemanticMap
 from mintpilot.core.trajectory import FlightEnd
 from mintpilot.core.tree import Certificate, GapExplanation
@@ -33,6 +34,7 @@ from mintpilot.recording.record import (
     OrderRecord,
     QuestionRecord,
     RoundRecord,
+    RuleRecord,
     SeenRecord,
     ValueRecord,
     WaitingRecord,
@@ -80,6 +82,7 @@ def build_record(history: History, *, run_dir: str = "", unfinished: str = "") -
         certificate=_certificate(certificate) if certificate else None,
         achieved=_achieved(ended.verdict) if ended else (),
         left=_left(ended.verdict) if ended else (),
+        rules=_rules(started.task.rules, ended.verdict if ended else None) if started else (),
         waiting=_waiting(ended.verdict) if ended else None,
         flight=flight,
         survey=flight_record(survey_legs) if survey_legs else None,
@@ -109,6 +112,14 @@ def versions() -> dict[str, str]:
 
 def _achieved(verdict: Verdict) -> tuple[AchievedRecord, ...]:
     return tuple(AchievedRecord(n=one.n, text=one.text, at_s=one.at_s) for one in verdict.achieved)
+
+
+def _rules(rules: Sequence[Rule], verdict: Verdict | None) -> tuple[RuleRecord, ...]:
+    broken = verdict.rules_broken if verdict is not None else None
+    return tuple(
+        RuleRecord(text=rule.text, formula=rule.formula, kept=None if broken is None else rule.text not in broken)
+        for rule in rules
+    )
 
 
 def _waiting(verdict: Verdict) -> WaitingRecord:

@@ -258,6 +258,17 @@ class AchievedRecord(Part):
     """When, seconds since the task began."""
 
 
+class RuleRecord(Part):
+    """A rule in time that the mission had."""
+
+    text: str
+    """In plain words."""
+    formula: str
+    """The same in LTLf."""
+    kept: bool | None
+    """Whether the flight kept it; null where nobody judged that: after orders, where it gave up, on a real vehicle."""
+
+
 class WaitingRecord(Part):
     """What waiting for answers took."""
 
@@ -313,6 +324,8 @@ class MissionRecord(Part):
     """What was done, in order."""
     left: tuple[LeftRecord, ...] = ()
     """What was to be done and was not."""
+    rules: tuple[RuleRecord, ...] = ()
+    """Rules in time."""
     waiting: WaitingRecord | None = None
     """What waiting for answers took; null in older records."""
     flight: FlightRecord

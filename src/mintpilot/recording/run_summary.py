@@ -11,6 +11,7 @@ from mintpilot.recording.record import (
     LeftRecord,
     MissionRecord,
     Part,
+    RuleRecord,
     WaitingRecord,
 )
 
@@ -54,6 +55,7 @@ class RunSummary(Part):
     achieved: tuple[AchievedRecord, ...]
     left: tuple[LeftRecord, ...]
     people: PeopleSummary
+    rules: tuple[RuleRecord, ...]
     waiting: WaitingRecord | None
     flight: FlightRecord
     timings_s: dict[str, float]
@@ -77,6 +79,7 @@ def summary(record: MissionRecord) -> RunSummary:
         achieved=record.achieved,
         left=record.left,
         people=people_of(record),
+        rules=record.rules,
         waiting=record.waiting,
         flight=record.flight,
         timings_s=record.timings_s,

@@ -19,6 +19,9 @@ from mintpilot.recording.words import OUTCOME_WORDS, printable
 
 WIDTH = 100
 """Columns that the report fits into."""
+_KEPT = {True: "kept", False: "BROKEN", None: "not judged"}
+"""What is said of a rule."""
+_RULE_STYLES = {True: "", False: "bold red", None: "yellow"}
 _STYLES = {
     Reply.YES: "bold green",
     Reply.NO: "bold red",
@@ -128,6 +131,7 @@ def _flown(record: MissionRecord) -> RenderableType:
         waited, hidden = number(record.waiting.delay_s, "s"), number(record.waiting.hidden_s, "s")
         lines.append(_plain(f"waited {waited} for answers, {hidden} of it hidden by flying on meanwhile"))
     lines.extend(_plain(line) for line in people_lines(record))
+    lines.extend(_plain(f"rule {_KEPT[rule.kept]}: {rule.text}", _RULE_STYLES[rule.kept]) for rule in record.rules)
     lines.extend(_plain(f"done after {number(one.at_s, 's')}: {one.text}") for one in record.achieved)
     lines.extend(_plain(f"left undone: {one.text} ({one.reason})", "yellow") for one in record.left)
     lines.extend(_plain(f"! {notice.text}", "yellow") for notice in record.notices)
