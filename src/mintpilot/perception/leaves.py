@@ -33,8 +33,8 @@ RELIEF_M = 0.02
 DIFFERENT = 0.16
 """A leaf's colour differs from its wall's median by at least this share of the full range in one channel."""
 STRIP_M = 0.25
-ALIKE_M = 0.12
-"""Panels of one cladding end at the same height, within this."""
+ALIKE_M, ALIKE_SHARE = 0.12, 0.3
+"""Panels of one cladding end at the same height within this, and are as wide within this share."""
 AVERAGED = 5
 """Relief is averaged over a square of so many pixels."""
 BAND_M, BANDS = 0.3, 16
@@ -92,12 +92,13 @@ def _along(wall: Body) -> Floats:
 
 
 def _in_a_row(one: _Extent, other: _Extent) -> bool:
-    """Whether two outlined patches are panels of one cladding: right beside each other, and as high.
+    """Whether two outlined patches are panels of one cladding: right beside each other, as wide and as high.
 
     Things in front may hide where the other one begins.
     """
     gap = max(other.left - one.right, one.left - other.right)
-    return abs(gap) < STRIP_M and abs(one.high - other.high) < ALIKE_M
+    as_wide = abs((other.right - other.left) / (one.right - one.left) - 1) < ALIKE_SHARE
+    return as_wide and abs(gap) < STRIP_M and abs(one.high - other.high) < ALIKE_M
 
 
 def _outliers(view: View, scene: Scene, wall: Body, lines: Bools) -> Iterator[tuple[Bools, bool]]:

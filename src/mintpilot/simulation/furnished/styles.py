@@ -9,7 +9,7 @@ from __future__ import annotations
 from mintpilot.simulation.furnished.fresh_styles import HOME, SCHOOL, WARD, WORKSHOP
 from mintpilot.simulation.furnished.style import CELLAR, CLINIC, OFFICE
 
-TUNED = {style.name: style for style in (OFFICE, SCHOOL, WORKSHOP, WARD)}
+TUNED = {style.name: style for style in (OFFICE, CELLAR, SCHOOL, WORKSHOP, WARD)}
 FRESH = {style.name: style for style in (SCHOOL, WORKSHOP, HOME, WARD)}
-HELD_BACK = {style.name: style for style in (CLINIC, CELLAR, HOME)}
+HELD_BACK = {style.name: style for style in (CLINIC, HOME)}
 STYLES = TUNED | HELD_BACK
