@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TypeAlias
 
@@ -46,6 +47,11 @@ class Box:
         """Edge lengths (x, y, z), metres."""
         x, y, z = (b - a for a, b in zip(self.lo_m, self.hi_m, strict=True))
         return (x, y, z)
+
+    def apart_m(self, other: Box) -> float:
+        """Shortest distance to another box, metres; 0 where they touch or overlap."""
+        sides = zip(self.lo_m, self.hi_m, other.lo_m, other.hi_m, strict=True)
+        return math.hypot(*(max(0.0, lo - top, bottom - hi) for lo, hi, bottom, top in sides))
 
     def contains(self, points_m: ArrayLike) -> Bools:
         """Which of the points (n, 3), or the one point (3,), are inside or on the surface."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import StrEnum
 
@@ -112,6 +113,11 @@ class NameGuess:
     """Semantic class, e.g. ``can``."""
     probability: float
     """That the thing is one, 0 to 1."""
+
+
+def chance_of(names: Iterable[NameGuess], label: str) -> float:
+    """Probability of one of several names; 0 where it is not among them."""
+    return next((guess.probability for guess in names if guess.label == label), 0.0)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

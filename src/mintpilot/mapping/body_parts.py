@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from mintpilot.core.geometry import Box
-from mintpilot.core.observation import OBJECT, PERSON, NameGuess
+from mintpilot.core.observation import OBJECT, PERSON, NameGuess, chance_of
 from mintpilot.core.semantic_map import MapObject
 
 LEAST = 0.02
@@ -20,7 +20,7 @@ TOUCH_M, LONGEST_M = 0.15, 2.1
 
 def with_parts_counted(objects: Sequence[MapObject]) -> tuple[MapObject, ...]:
     """The objects, of which the largest of each group of possible parts of a body is a person as probably as any is."""
-    parts = [o for o in objects if o.label == OBJECT and _person(o) >= LEAST]
+    parts = [o for o in objects if o.label == OBJECT and chance_of(o.names, PERSON) >= LEAST]
     changed: dict[str, MapObject] = {}
     left = sorted(parts, key=lambda o: (-math.prod(o.box_m.size_m), o.id))
     while left:
@@ -28,23 +28,19 @@ def with_parts_counted(objects: Sequence[MapObject]) -> tuple[MapObject, ...]:
         box = group[0].box_m
         for other in list(left):
             whole = _around(box, other.box_m)
-            if _apart_m(box, other.box_m) < TOUCH_M and max(whole.size_m) <= LONGEST_M:
+            if box.apart_m(other.box_m) < TOUCH_M and max(whole.size_m) <= LONGEST_M:
                 group.append(other)
                 left.remove(other)
                 box = whole
         if len(group) > 1:
-            chance = 1.0 - math.prod(1.0 - _person(o) for o in group)
+            chance = 1.0 - math.prod(1.0 - chance_of(o.names, PERSON) for o in group)
             changed[group[0].id] = _as_person(group[0], min(MOST, chance))
     return tuple(changed.get(o.id, o) for o in objects)
 
 
-def _person(thing: MapObject) -> float:
-    return next((g.probability for g in thing.names if g.label == PERSON), 0.0)
-
-
 def _as_person(thing: MapObject, chance: float) -> MapObject:
     """The thing, a person that probably; what else it may be shares the rest as before."""
-    share = (1.0 - chance) / max(1e-9, 1.0 - _person(thing))
+    share = (1.0 - chance) / max(1e-9, 1.0 - chance_of(thing.names, PERSON))
     names = [NameGuess(label=g.label, probability=g.probability * share) for g in thing.names if g.label != PERSON]
     names.append(NameGuess(label=PERSON, probability=chance))
     return replace(thing, names=tuple(sorted(names, key=lambda g: (-g.probability, g.label))))
@@ -54,8 +50,3 @@ def _around(a: Box, b: Box) -> Box:
     lo = tuple(min(x, y) for x, y in zip(a.lo_m, b.lo_m, strict=True))
     hi = tuple(max(x, y) for x, y in zip(a.hi_m, b.hi_m, strict=True))
     return Box(lo_m=(lo[0], lo[1], lo[2]), hi_m=(hi[0], hi[1], hi[2]))
-
-
-def _apart_m(a: Box, b: Box) -> float:
-    gaps = [max(0.0, al - bh, bl - ah) for al, ah, bl, bh in zip(a.lo_m, a.hi_m, b.lo_m, b.hi_m, strict=True)]
-    return math.hypot(*gaps)

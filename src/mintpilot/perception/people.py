@@ -120,7 +120,7 @@ def _clusters(segments: Sequence[Segment]) -> Iterator[list[int]]:
         while edge:
             i = edge.pop()
             cluster.append(i)
-            near = {j for j in left if _apart(segments[i].box_m, segments[j].box_m) < TOUCH_M}
+            near = {j for j in left if segments[i].box_m.apart_m(segments[j].box_m) < TOUCH_M}
             near = {j for j in near if trees[i].count_neighbors(trees[j], TOUCH_M) > 0}
             left -= near
             edge += sorted(near)
@@ -130,13 +130,6 @@ def _clusters(segments: Sequence[Segment]) -> Iterator[list[int]]:
 def _may_be_limb(segment: Segment) -> bool:
     shape = solid_shape(segment)
     return shape.flat < FLATTEST[1] and (shape.boxlike < FLATTEST[1] or int(segment.mask.sum()) < LEAST_PIXELS)
-
-
-def _apart(a: Box, b: Box) -> float:
-    gaps = [
-        max(0.0, low - high) for low, high in (*zip(a.lo_m, b.hi_m, strict=True), *zip(b.lo_m, a.hi_m, strict=True))
-    ]
-    return float(np.linalg.norm(gaps))
 
 
 def _spread(normals: Floats) -> float:

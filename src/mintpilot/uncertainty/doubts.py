@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from mintpilot.core.gap import ABSENT, PRESENT, GapKind, KnowledgeGap, presence_id
-from mintpilot.core.observation import OBJECT, PERSON
+from mintpilot.core.observation import OBJECT, PERSON, chance_of
 from mintpilot.core.semantic_map import MapObject
 from mintpilot.uncertainty.things import Thing, stands_for
 
@@ -35,18 +35,14 @@ class Referents:
 
 def is_doubtful_person(thing: MapObject | Thing) -> bool:
     """Whether it is to be asked if a thing is a person."""
-    return DOUBTFUL[0] <= _person(thing) < DOUBTFUL[1]
-
-
-def _person(thing: MapObject | Thing) -> float:
-    return next((g.probability for g in thing.names if g.label == PERSON), 0.0)
+    return DOUBTFUL[0] <= chance_of(thing.names, PERSON) < DOUBTFUL[1]
 
 
 def doubtful_people(objects: Sequence[MapObject]) -> list[KnowledgeGap]:
     """One gap for each thing that may be a person: a doubtful person is asked about, never left out in silence."""
     gaps = []
     for thing in sorted(objects, key=lambda o: o.id):
-        chance = _person(thing)
+        chance = chance_of(thing.names, PERSON)
         if is_doubtful_person(thing):
             gaps.append(
                 KnowledgeGap(
