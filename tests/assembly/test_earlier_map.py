@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -64,8 +65,10 @@ def test_nothing_that_somebody_said_is_taken_over_and_what_was_drawn_stays_close
     )
     opened = without_permissions(map)
     assert {r.id: r.passable for r in opened.regions} == dict.fromkeys(
-        ("smoke-1", "smoke-2", "drawn-earlier-7"), Knowledge.OPEN
+        ("smoke-1", "smoke-2", "drawn-earlier-1"), Knowledge.OPEN
     )
+    again = without_permissions(replace(opened, regions=(*opened.regions, region("told-1", Knowledge.NO))))
+    assert [r.id for r in again.regions] == ["smoke-1", "smoke-2", "drawn-earlier-1", "drawn-earlier-2"]
     assert (opened.rooms[0].occupied, opened.rooms[0].searched, opened.rooms[0].best_view) == (
         Knowledge.OPEN,
         False,

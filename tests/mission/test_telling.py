@@ -44,6 +44,7 @@ from mintpilot.mission.deliberation import DeliberationParts
 from mintpilot.mission.directives import Deliberate, Directive, Move, Observe, WithdrawQuestion
 from mintpilot.mission.state import READ_BACK_S, MissionState, Setup
 from mintpilot.mission.step import initial_state, step
+from mintpilot.mission.telling import MOST_TOLD
 from mintpilot.mission.worker import worked_out
 
 
@@ -126,6 +127,17 @@ def test_what_adds_caution_counts_at_once_and_is_thought_of(fact: Fact) -> None:
     assert Deliberate in kinds
     blocked = {region.id for region in scene.beliefs.map.regions if region.passable is Knowledge.NO}
     assert blocked == ({"cloud"} if isinstance(fact, RegionBlocked) else {scene.last})
+
+
+def test_whoever_tells_without_end_uses_up_no_caution() -> None:
+    scene = Scene()
+    for _ in range(MOST_TOLD):
+        scene.tell(RegionPassable(region="there is none"))
+    scene.tell(RegionPassable(region="cloud"))
+    assert len(scene.state.told) == MOST_TOLD, "it is not even kept"
+    scene.tell(RegionBlocked(region="cloud"))
+    assert scene.standing is Standing.COUNTS
+    assert next(r for r in scene.beliefs.map.regions if r.id == "cloud").passable is Knowledge.NO
 
 
 @pytest.mark.parametrize("fact", READ_BACK)

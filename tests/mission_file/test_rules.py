@@ -53,6 +53,9 @@ def test_every_pattern_is_read(tmp_path, rule, formula):
         (["{never: touches(smoke-2)}"], "did you mean 'smoke-1'"),
         (["{never: looked(rom-1)}"], "did you mean 'room-1'"),
         (["{never: at(bx)}"], "did you mean 'box'"),
+        (["{never: 'within(peopel, 2)'}"], "did you mean 'people'"),
+        (["{never: 'within(smoke-3, 2)'}"], "there is no thing, region or people"),
+        (["{never: carrying(bxo)}"], "did you mean 'box'"),
         (["{never: touch(smoke-1)}"], "Did you mean 'touches'"),
         (["{never: touches(smoke-1), then: at(box)}"], "is no rule; known"),
         (["{}"], "nothing is no rule"),
@@ -62,7 +65,7 @@ def test_every_pattern_is_read(tmp_path, rule, formula):
         (["{never: at(box)}", "{first: did(look), then: at(box)}"], "contradict each other"),
         (["'at(box) & !at(box)'"], "contradicts itself"),
         (["'at(box) | !at(box)'"], "it says nothing"),
-        ([f"'{' & '.join(f'F within(x{i}, 1)' for i in range(9))}'"], "more than 256 states"),
+        ([f"'{' & '.join(f'F within(people, {i + 1})' for i in range(9))}'"], "more than 256 states"),
     ],
 )
 def test_a_mistake_is_told_at_its_rule(tmp_path, rules, said):
@@ -72,5 +75,10 @@ def test_a_mistake_is_told_at_its_rule(tmp_path, rules, said):
 
 
 def test_an_automaton_of_32_states_is_taken(tmp_path):
-    _, found = problems(tmp_path, f"'{' & '.join(f'F within(x{i}, 1)' for i in range(5))}'")
+    _, found = problems(tmp_path, f"'{' & '.join(f'F within(people, {i + 1})' for i in range(5))}'")
     assert not found
+
+
+@pytest.mark.parametrize("subject", ["box", "boxes", "the boxes", "box-1", "people", "smoke", "smoke-1"])
+def test_what_a_distance_may_be_kept_from(tmp_path, subject):
+    assert not problems(tmp_path, f"{{never: 'within({subject}, 0.5)'}}")[1]

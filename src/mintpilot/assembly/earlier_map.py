@@ -71,7 +71,12 @@ def without_permissions(map: SemanticMap) -> SemanticMap:
     """
     rooms = tuple(replace(room, occupied=Knowledge.OPEN, searched=False, best_view=None) for room in map.rooms)
     objects = tuple(replace(thing, best_view=None) for thing in map.objects)
-    return replace(map, objects=objects, regions=tuple(_open(region) for region in map.regions), rooms=rooms)
+    numbers = [int(r.id.removeprefix(_DRAWN)) for r in map.regions if r.id.startswith(_DRAWN)]
+    regions, last = [], max(numbers, default=0)
+    for region in map.regions:
+        last += region.id.startswith(PREFIX)
+        regions.append(_open(region, f"{_DRAWN}{last}"))
+    return replace(map, objects=objects, regions=tuple(regions), rooms=rooms)
 
 
 def in_words(age_s: float) -> str:
@@ -83,9 +88,9 @@ def in_words(age_s: float) -> str:
     return "less than a minute"
 
 
-def _open(region: Region) -> Region:
+def _open(region: Region, drawn_name: str) -> Region:
     drawn = region.id.startswith(PREFIX)
-    name = f"{_DRAWN}{region.id.removeprefix(PREFIX)}" if drawn else region.id
+    name = drawn_name if drawn else region.id
     words = "the region that was drawn earlier" if drawn else region.description
     return replace(region, id=name, passable=Knowledge.OPEN, description=words, best_view=None)
 

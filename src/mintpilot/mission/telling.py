@@ -25,7 +25,7 @@ from mintpilot.mission.state import READ_BACK_S, Activity, MissionState, Telling
 from mintpilot.mission.transition import Transition
 
 MOST_TOLD: Final = 200
-"""Facts of one mission."""
+"""Facts of one mission; beyond it only those that add caution are taken, as long as fewer of these count."""
 _FREEING: Final = (RegionPassable, RoomSearched, ThisOne)
 """Facts that are read back whatever is permitted already: said again, they count longer, or weigh more."""
 _IN_FLIGHT: Final = (
@@ -42,7 +42,7 @@ _IN_FLIGHT: Final = (
 def told(t: Transition, event: FactTold) -> None:
     """Takes a fact over at once where it adds caution; else reads it back."""
     beliefs, mission = t.state.beliefs, t.state.setup.mission
-    if len(t.state.told) >= MOST_TOLD:
+    if _too_many(t.state, event.fact):
         t.tell("I cannot keep more of what is told in one mission.")
         return
     known = ToldFact(
@@ -65,6 +65,13 @@ def told(t: Transition, event: FactTold) -> None:
     else:
         _keep(t, Telling(known=known, memory=found.memory, counts_s=t.state.clock_s))
         _take_over(t, found.beliefs)
+
+
+def _too_many(state: MissionState, fact: Fact) -> bool:
+    if len(state.told) < MOST_TOLD:
+        return False
+    counting = [one for one in state.told if one.known.standing is Standing.COUNTS]
+    return isinstance(fact, _FREEING) or sum(not isinstance(o.known.fact, _FREEING) for o in counting) >= MOST_TOLD
 
 
 def confirmed(t: Transition, event: FactConfirmed) -> None:

@@ -15,6 +15,7 @@ from mintpilot.rules import patterns
 from mintpilot.rules.formula import propositions_of
 from mintpilot.rules.parsing import parse, proposition
 from mintpilot.rules.satisfying import conflicting, is_trivial
+from mintpilot.uncertainty.ruling import labels_of
 
 _PATTERNS: dict[frozenset[str], Callable[[RuleSpec], Rule]] = {
     frozenset({"never"}): lambda s: patterns.never(proposition(s.never or "")),
@@ -85,12 +86,24 @@ def _name_faults(file: MissionFile, rule: Rule, path: Path_) -> Iterator[Fault]:
                 noun, known = "goal with the id", goals
             case About.LOOKED:
                 noun, known = "room", rooms
-            case About.WITHIN | About.CARRYING:
-                continue
+            case About.WITHIN:
+                noun, known = "thing, region or people", ["people", *regions, *_things(file)]
+                if any(label in known for label in labels_of(what.subject)):
+                    continue
+            case About.CARRYING:
+                noun, known = "thing", _things(file)
             case _:
                 pass
-        if what.subject not in known and (on_map or noun.startswith("goal")):
+        if what.subject not in known and (on_map or what.about in (About.AT, About.DID)):
             yield _fault(path, f"{what}: there is no {noun} '{what.subject}'; {nearest(what.subject, known)}")
+
+
+def _things(file: MissionFile) -> list[str]:
+    """What things may be called: ids and labels of a given map, labels and words of the goals and the instruction."""
+    goals = [word for goal in file.goals or () for word in (goal.label or "", *(goal.phrase or "").split())]
+    objects = [name for o in file.world.objects for name in (o.id, o.label)] if isinstance(file.world, MapWorld) else []
+    words = (word.strip(".,;:!").lower() for word in file.instruction.split())
+    return sorted({*objects, *goals, *words} - {""})
 
 
 def _keys(spec: RuleSpec) -> frozenset[str]:

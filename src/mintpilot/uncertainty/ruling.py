@@ -102,16 +102,23 @@ def _cells(what: Proposition, map: SemanticMap) -> Ints:
     if not what.about.spatial:
         return np.zeros(0, np.int64)
     regions = [r.cells for r in map.regions if what.subject in (r.id, str(r.kind))]
+    regions = regions or [r.cells for r in map.regions if is_part_of(r.id, what.subject)]
     if regions or what.about is not About.WITHIN:
         return np.unique(np.concatenate([np.zeros(0, np.int64), *regions]))
     near = np.zeros(map.frame.shape, bool)
     for thing in things_of(map):
-        if what.subject == thing.id or thing.label in _labels(what.subject):
+        if what.subject == thing.id or thing.label in labels_of(what.subject):
             near |= around_box(map, box_of(thing), _TOUCHING_M)
     return np.flatnonzero(near).astype(np.int64)
 
 
-def _labels(subject: str) -> tuple[str, ...]:
-    """What things of that name are labelled: ``people``, ``barrels``, ``the box``."""
+def is_part_of(region: str, whole: str) -> bool:
+    """Whether a region is one of the numbered parts that a declared one was cut into: by a mask, or by its value."""
+    part = region.removeprefix(f"{whole}-")
+    return part != region and part.isdigit()
+
+
+def labels_of(subject: str) -> tuple[str, ...]:
+    """What things of that name are labelled: ``people``, ``barrels``, ``boxes``, ``the box``."""
     bare = subject.removeprefix("the ")
-    return ("person",) if bare in ("people", "persons") else (bare, bare.removesuffix("s"))
+    return ("person",) if bare in ("people", "persons") else (bare, bare.removesuffix("s"), bare.removesuffix("es"))
