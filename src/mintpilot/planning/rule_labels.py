@@ -1,8 +1,9 @@
 """The truth of spatial propositions on the grid, and the automaton of the rules laid over it (method, section 14).
 
-A proposition is known at a cell where it has one value at every place nearer to that cell's centre than half a cell's
-diagonal: then it has it along all straight ways between centres. Elsewhere it *may* hold, and a plan must keep the
-rules whichever it is, at every moment: the automaton is followed with the set of states that are possible.
+A proposition is known at a cell where it has one value along all straight ways between that cell's centre and those of
+its neighbours. Elsewhere it *may* hold, and a plan must keep the rules whichever it is, at every moment: the automaton
+is followed with the set of states that are possible. A flown way may pass a cell off such a straight way, by less than
+half a cell's diagonal: within that, labels of `touches` and `within` are not certain; the judge measures exactly.
 """
 
 from __future__ import annotations
