@@ -115,14 +115,18 @@ def real_parts(link: SoundLink, *, lang: str = "en") -> VoiceParts:
         MissingPartError: one is not; the message says how to get it.
         InputError: a model file is not the pinned one.
     """
-    first, second = (load("recogniser", name)() for name in ("moonshine", "whisper"))
-    activity = load("activity", "silero")()
     return VoiceParts(
         speech=load("speech", "piper" if lang == "en" else "espeak")(),
-        ear=Ear(first=first, second=second),
-        activity=activity,
+        ear=hears_here(),
+        activity=load("activity", "silero")(),
         link=link,
     )
+
+
+def hears_here() -> Ear:
+    """Both installed recognisers. Raises as `real_parts`."""
+    first, second = (load("recogniser", name)() for name in ("moonshine", "whisper"))
+    return Ear(first=first, second=second)
 
 
 def voice_operator(link: SoundLink, talk: Talk, caption: Callable[[str], object]) -> VoiceOperator:

@@ -177,7 +177,7 @@ def _operators(
         return ("scripted",)
     if choice == ("scripted",):
         return ("scripted",)
-    made: list[AnyOperator] = [] if served is None else [served.operator]
+    made: list[AnyOperator] = [] if served is None else [served.operator, served.voice]
     if "voice" in choice:
         made.append(_voice(console, closing))
     # by voice, keys answer as well
