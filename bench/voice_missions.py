@@ -16,9 +16,10 @@ from bench.sections import Section, Table, keep
 from mintpilot.assembly.api import run_mission
 from mintpilot.assembly.registry import load
 from mintpilot.assembly.talk import Talk
-from mintpilot.assembly.voiced import LoopbackParts, hears_here, loopback_operator
+from mintpilot.assembly.voiced import LoopbackParts, hears_here, loopback_operator, speech_for
 from mintpilot.assembly.worlds import build_world
 from mintpilot.benchmark.intervals import clopper_pearson
+from mintpilot.benchmark.kokoro_voices import KokoroSpeech
 from mintpilot.benchmark.summary import latency_s
 from mintpilot.benchmark.tally import Tally
 from mintpilot.cli.demos import demo_path
@@ -30,6 +31,8 @@ from mintpilot.voice.operator import VoiceOperator
 from mintpilot.voice.ports import Speech
 
 PAPER_S = 20.7
+VOICES = KokoroSpeech.languages
+"""Of the person, in turn: an American man, a British woman, a British man."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -78,6 +81,22 @@ class TimedEar(Ear):
         return heard
 
 
+class Person(Speech):
+    """Another voice than the drone's; says few words, each made once."""
+
+    languages = ("en",)
+
+    def __init__(self, speech: Speech, voice: str) -> None:
+        self._speech, self._voice = speech, voice
+        self._kept: dict[str, Floats] = {}
+
+    def say(self, text: str, *, lang: str = "en", speed: float = 1.0) -> Floats:
+        if text not in self._kept:
+            assert lang in self.languages
+            self._kept[text] = self._speech.say(text, lang=self._voice, speed=speed)
+        return self._kept[text]
+
+
 class TimedSpeech(Speech):
     """Adds up what synthesis took."""
 
@@ -94,7 +113,7 @@ class TimedSpeech(Speech):
         return said
 
 
-def fly(seed: int, snr_db: float | None, vehicle: str, speech: Speech, ear: Ear) -> Trial:
+def fly(seed: int, snr_db: float | None, vehicle: str, speech: Speech, voice: Speech, ear: Ear) -> Trial:
     """One mission with everything that is real but the person, the rotors and the vehicle."""
     path = demo_path("medicine")
     made: list[tuple[VoiceOperator, LoopbackPerson]] = []
@@ -105,7 +124,7 @@ def fly(seed: int, snr_db: float | None, vehicle: str, speech: Speech, ear: Ear)
         world = build_world(read_mission(path), base=path.parent, seed=seed, parse=talk.parse)
         parts = LoopbackParts(
             speech=timed_speech, ear=timed_ear, activity=load("activity", "silero")(), person_hears=ear.first,
-            person_speaks=speech,
+            person_speaks=Person(voice, VOICES[seed % len(VOICES)]),
         )  # fmt: skip
         rng = np.random.default_rng([seed, 15])
         made.append(loopback_operator(world, talk, parts, rng=rng, conditions=Conditions(snr_db=snr_db)))
@@ -147,9 +166,10 @@ def section(trials: list[Trial], command: str) -> Section:
         name="57-voice-missions",
         title="The box mission by voice alone",
         command=command,
-        how="Questions are said by Piper, understood by a simulated person by their sound (Moonshine) and answered "
-        "from the truth by Piper's voice beside made rotor noise; the answers are heard by both recognisers, read back and "
-        "confirmed. Everything that the drone says is counted, notices too, and 1 s of reaction for each answer.",
+        how="The drone's voice asks; a simulated person understands by the sound alone (Moonshine) and answers "
+        "from the truth, in one of three natural voices, beside made rotor noise. Both recognisers hear the answers, "
+        "which are read back and confirmed. Everything that the drone says is counted, notices too, and 1 s of "
+        "reaction for each answer.",
         tables=[
             Table(
                 caption="Missions",
@@ -175,6 +195,7 @@ def section(trials: list[Trial], command: str) -> Section:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--seeds", type=int, default=20)
+    parser.add_argument("--kokoro", type=Path, required=True, help='the folder "voices" of kokoro-js')
     parser.add_argument("--snr", type=float, default=10.0)
     parser.add_argument("--vehicle", default="kinematic")
     parser.add_argument("--out", type=Path, default=Path("runs/bench-voice-missions"))
@@ -184,23 +205,23 @@ def main() -> None:
     file = options.out / "missions.jsonl"
     kept = [Trial(**json.loads(line)) for line in file.read_text().splitlines()] if file.exists() else []
     trials = {t.seed: t for t in kept if (t.snr_db, t.vehicle) == (options.snr, options.vehicle)}
-    speech, ear = load("speech", "piper")(), hears_here()
+    speech, voice, ear = speech_for("en"), KokoroSpeech(options.kokoro), hears_here()
     for seed in range(options.seeds):
         if seed not in trials:
-            trials[seed] = fly(seed, options.snr, options.vehicle, speech, ear)
+            trials[seed] = fly(seed, options.snr, options.vehicle, speech, voice, ear)
             with file.open("a") as lines:
                 lines.write(json.dumps(asdict(trials[seed])) + "\n")
             print(
                 f"{seed}: {trials[seed].outcome}, {trials[seed].all_s:.1f} s, own {trials[seed].own_s:.1f} s",
                 flush=True,
             )
-    speech.close()
     if not options.dry:
         done = [trials[seed] for seed in sorted(trials) if seed < options.seeds]
         keep(
             section(
                 done,
-                f"python -m bench.voice_missions --seeds {len(done)} --snr {options.snr:g} --vehicle {options.vehicle}",
+                f"python -m bench.voice_missions --kokoro FOLDER --seeds {len(done)} --snr {options.snr:g} "
+                f"--vehicle {options.vehicle}",
             )
         )
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from mintpilot.assembly.registry import load
 from mintpilot.assembly.talk import Talk
-from mintpilot.assembly.voiced import hears_here
+from mintpilot.assembly.voiced import hears_here, speech_for
 from mintpilot.core.errors import MintPilotError, MissingPartError
 from mintpilot.core.geometry import Floats
 from mintpilot.core.inputs import OperatorInput
@@ -16,7 +16,7 @@ from mintpilot.core.ports import Operator
 from mintpilot.core.query import Question
 from mintpilot.voice.audio import from_pcm, to_pcm16
 from mintpilot.voice.operator import VoiceOperator, VoiceParts
-from mintpilot.voice.ports import RATE_HZ, SoundLink
+from mintpilot.voice.ports import RATE_HZ, SoundLink, Speech
 
 if TYPE_CHECKING:
     from mintpilot.console.microphone import Microphone
@@ -156,7 +156,7 @@ def page_parts(link: SoundLink, lang: str) -> VoiceParts:
     """
     ear, activity = hears_here(), load("activity", "silero")()
     try:
-        speech = load("speech", "piper" if lang == "en" else "espeak")()
+        speech: Speech | None = speech_for(lang)
     except MissingPartError:
         speech = None
     return VoiceParts(speech=speech, ear=ear, activity=activity, link=link)

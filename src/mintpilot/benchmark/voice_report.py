@@ -212,7 +212,7 @@ def _voices(options: VoiceOptions, opened: list[Speech]) -> list[tuple[str, Spee
     """Voices of several programs, American and British. Raises `MissingPartError`."""
     if not options.voices:
         return []
-    piper, espeak = load("speech", "piper")(), load("speech", "espeak")()
+    heart, piper, espeak = (load("speech", name)() for name in ("hibari", "piper", "espeak"))
     opened += [piper, espeak]
     natural: list[tuple[str, Speech, str, float]] = []
     if options.kokoro is not None:
@@ -220,11 +220,12 @@ def _voices(options: VoiceOptions, opened: list[Speech]) -> list[tuple[str, Spee
 
         kokoro = KokoroSpeech(options.kokoro)
         natural = [
-            ("Heart, American woman", kokoro, "heart", 1.0), ("Michael, American man", kokoro, "am_michael", 1.0),
+            ("Michael, American man", kokoro, "am_michael", 1.0),
             ("Emma, British woman", kokoro, "bf_emma", 1.0), ("George, British man", kokoro, "bm_george", 1.0),
         ]  # fmt: skip
     every = [
-        ("Joe, American man", piper, "en", 1.0), *natural, ("espeak, Scottish", espeak, "en-gb-scotland", 0.9),
+        ("Joe, American man", piper, "en", 1.0), ("Heart, American woman", heart, "en", 1.0), *natural,
+        ("espeak, Scottish", espeak, "en-gb-scotland", 0.9),
         ("espeak, New York", espeak, "en-us-nyc", 0.9), ("espeak, British woman", espeak, "en+f4", 0.9),
     ]  # fmt: skip
     return every[: options.voices]

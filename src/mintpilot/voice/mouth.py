@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import re
 from collections import OrderedDict
+from collections.abc import Mapping
 from concurrent.futures import Future, ThreadPoolExecutor
 from concurrent.futures import TimeoutError as NotYet
 from dataclasses import dataclass
@@ -21,6 +23,13 @@ _WAITING = 8
 """Notices that wait; more are shown only."""
 MUTED_S = 0.6
 """What is not said aloud takes so long to read at least: what is said meanwhile does not answer it, seconds."""
+_UNITS: Mapping[str, tuple[str, str]] = {
+    "en": ("seconds", "metres"),
+    "de": ("Sekunden", "Meter"),
+    "fr": ("secondes", "mètres"),
+    "es": ("segundos", "metros"),
+}
+"""How ``s`` and ``m`` are said."""
 SYNTHESIS_S = 10.0
 """Speech that takes longer to make is given up: the caption stands, seconds."""
 
@@ -53,6 +62,13 @@ class VoiceSettings:
     """1 is usual, 2 twice as fast."""
     muted: bool = False
     """Silence is said; captions remain."""
+
+
+def aloud(text: str, lang: str) -> str:
+    """A text with its units as they are said: ``3 s`` as ``3 seconds``."""
+    for short, word in zip(("s", "m"), _UNITS.get(lang, ()), strict=False):
+        text = re.sub(rf"(?<=\d) {short}\b(?!/)", f" {word}", text)
+    return text
 
 
 class Mouth:
@@ -144,7 +160,7 @@ class Mouth:
             return np.zeros(int(MUTED_S * RATE_HZ))
         key = (text, speed)
         if key not in self._kept:
-            self._kept[key] = clean(self._speech.say(text, lang=self._lang, speed=speed))
+            self._kept[key] = clean(self._speech.say(aloud(text, self._lang), lang=self._lang, speed=speed))
             while len(self._kept) > _KEPT:
                 self._kept.popitem(last=False)
         self._kept.move_to_end(key)
