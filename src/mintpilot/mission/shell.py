@@ -137,11 +137,16 @@ class Shell:
                 case Tell():
                     operator.tell(directive.text)
 
-    def begin_task(self) -> None:
-        """The survey is over."""
+    def begin_task(self) -> list[Input]:
+        """The survey is over. The vehicle's battery may be another one now: how it stands is said at once."""
         self._parts.begin_task()
         self._parts.recorder.record(Timed(stage="survey", seconds=time.perf_counter() - self._begun))
         self._flying_s = 0.0
+        try:
+            vehicle = self._parts.vehicle.state()
+        except DeviceError as error:
+            return [self._telemetry_lost(error)]
+        return [Ticked(time_s=self._now_s, vehicle=vehicle)]
 
     def verdict(self, state: MissionState) -> Verdict:
         """How it really went where somebody can tell, else how the mission believes that it went."""
