@@ -20,7 +20,7 @@ from mintpilot.core.ports import Ask, LanguageModel, Operator, Recorder
 from mintpilot.core.think_time import think_time
 from mintpilot.mission.explanations import explanations
 from mintpilot.mission.preview import preview
-from mintpilot.mission_file.reader import read_mission
+from mintpilot.mission_file.reader import check_contents, read_mission
 from mintpilot.mission_file.schema import MissionFile
 from mintpilot.vehicle.address import SCHEME, parse_address
 
@@ -222,7 +222,9 @@ class _Told(Recorder):
 
 def _opened(mission: str | Path | MissionFile, base: Path | None) -> tuple[MissionFile, Path]:
     if isinstance(mission, MissionFile):
-        return mission, base or Path.cwd()
+        folder = base or Path.cwd()
+        check_contents(mission, folder)
+        return mission, folder
     path = Path(mission)
     return read_mission(path), base or path.parent
 

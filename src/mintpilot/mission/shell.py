@@ -159,8 +159,9 @@ class Shell:
             if believed.outcome not in (Outcome.SUCCESS, Outcome.PARTIAL):
                 return believed
             failure = judge.final()
-            if believed.outcome is Outcome.PARTIAL and failure.outcome in (Outcome.PERSON_MISSED, Outcome.NOT_REACHED):
-                return believed
+            missed = failure.outcome in (Outcome.PERSON_MISSED, Outcome.NOT_REACHED)
+            if believed.outcome is Outcome.PARTIAL and (missed or state.lacks_wanted):
+                return believed  # the judge of people and things does not know of every place that was asked for
         return replace(failure, achieved=believed.achieved, left=believed.left, waiting=believed.waiting)
 
     def close(self) -> None:

@@ -293,6 +293,12 @@ class MissionState:
         """Whether that link is down."""
         return any(name is link for name, _ in self.links_down)
 
+    @property
+    def lacks_wanted(self) -> bool:
+        """Whether a place or thing that was asked for is not done; rooms that somebody may be in do not count."""
+        finished = self.beliefs.finished if self.beliefs is not None else frozenset[str]()
+        return any(not stop.optional and stop.id not in finished for stop in self.wanted)
+
     def next_deadline_s(self) -> float:
         """The next moment at which passing time alone changes something, mission clock; infinity: none."""
         times = [self.question.deadline_s] if self.question is not None else []

@@ -33,7 +33,7 @@ class Problem:
     file: str
     """The file as it was named."""
     line: int
-    """Line in it, from 1."""
+    """Line in it, from 1; 0 for contents that no file holds."""
     path: str
     """Where in the mission, e.g. ``world.regions[0].prior_passable``; empty for the file as a whole."""
     message: str
@@ -42,7 +42,8 @@ class Problem:
     @property
     def place(self) -> str:
         """``FILE:LINE (path.to.key)``."""
-        return f"{self.file}:{self.line}" + (f" ({self.path})" if self.path else "")
+        where = f"{self.file}:{self.line}" if self.line else self.file
+        return where + (f" ({self.path})" if self.path else "")
 
     def __str__(self) -> str:
         return f"{self.place}: {self.message}"
@@ -73,6 +74,25 @@ def read_mission(path: str | Path) -> MissionFile:
     if mission is None or problems:
         raise MissionFileError(problems)
     return mission
+
+
+def check_contents(mission: MissionFile, base: Path) -> None:
+    """Checks a mission that was made by a program as one that is read from a file is.
+
+    Args:
+        mission: of correct form.
+        base: folder that file names in it are relative to.
+
+    Raises:
+        MissionFileError: it has mistakes; all of them are in the message and in ``problems``.
+    """
+    name = f"mission '{mission.name}'"
+    problems = [
+        Problem(file=name, line=0, path=path_text(fault.path), message=fault.message)
+        for fault in contradictions(mission, base)
+    ]
+    if problems:
+        raise MissionFileError(problems)
 
 
 def find_problems(path: str | Path) -> list[Problem]:
