@@ -141,10 +141,12 @@ class Attended(Operator):
 
     def show(self, question: Question, patience_s: float) -> None:
         """Is answered a little later."""
+        del patience_s
         self._open.append((time.monotonic(), question))
 
     def withdraw(self, question: str, why: str) -> None:
         """Answers no more."""
+        del why
         self._open = [one for one in self._open if one[1].id != question]
 
     def tell(self, text: str) -> None:
@@ -207,10 +209,11 @@ def main() -> None:
         name="57-load",
         title="Load: long, many, at once",
         command=f"python -m bench.load --hours {args.hours} --missions {args.missions} --at-once {args.at_once}",
-        how="Kinematic simulator. *Long*: one mission with a run folder, to and fro in a hall. *Many*: missions with one "
-        f"question each in one process, without a run folder; memory from mission {WARM} on. *At once*: as many "
-        f"processes, each with an attended operator who answers after {ANSWERS_S:g} s, so that mission time passes as on "
-        f"the wall; what is said is heard at the next look, and late where that comes more than {HEARD_S:g} s after the one before.",
+        how="Kinematic simulator. *Long*: one mission with a run folder, to and fro in a hall. *Many*: missions with "
+        f"one question each in one process, without a run folder; memory from mission {WARM} on. *At once*: so many "
+        f"processes, each with an attended operator who answers after {ANSWERS_S:g} s, so that mission time passes as "
+        f"on the wall; what is said is heard at the next look, and late where that comes more than {HEARD_S:g} s after "
+        "the one before.",
         tables=[
             Table(caption="Long", header=("hour", "events", "memory, MB", "written, MB"), rows=hours),
             Table(
