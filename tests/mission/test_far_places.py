@@ -40,6 +40,8 @@ def test_what_is_not_worth_its_flight_is_left_and_said() -> None:
     record = run_mission(to_and_fro(failure_price_s=600), vehicle="kinematic")
     assert record.outcome is Outcome.PARTIAL
     assert [(one.text, one.resource) for one in record.left] == [("go to the place at (55, 4)", "price")]
+    assert record.certificate is not None
+    assert "It leaves undone: go to the place at (55, 4) (the way there needs 18" in record.certificate.text
 
 
 @pytest.mark.parametrize("price_s", [300.0, 5000.0])
