@@ -41,7 +41,7 @@ def test_what_is_not_worth_its_flight_is_left_and_said() -> None:
     assert record.outcome is Outcome.PARTIAL
     assert [(one.text, one.resource) for one in record.left] == [("go to the place at (55, 4)", "price")]
     assert record.certificate is not None
-    assert "It leaves undone: go to the place at (55, 4) (the way there needs 18" in record.certificate.text
+    assert "It leaves undone: go to the place at (55, 4) (the way there needs 19" in record.certificate.text
 
 
 @pytest.mark.parametrize("price_s", [300.0, 5000.0])
