@@ -53,7 +53,7 @@ def patrol(hours: int) -> MissionFile:
                 }
             },
             "goals": goals,
-            "vehicle": {"cruise_mps": SLOW_MPS, "endurance_s": 3600.0 * (hours + 2)},
+            "vehicle": {"cruise_mps": SLOW_MPS, "endurance_s": 2 * 3600.0 * hours},
         }
     )
 
