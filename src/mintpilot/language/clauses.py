@@ -26,6 +26,8 @@ class Reading:
     home_m: Vec3 | None
     subgoals: list[SubGoal] = field(default_factory=list)
     seeks_people: bool = False
+    sought_at: int | None = None
+    """Number of steps that stood before the last search for people."""
     avoid: list[Avoidance] = field(default_factory=list)
     keep_away: list[KeepAway] = field(default_factory=list)
     slowly: bool = False
@@ -134,7 +136,19 @@ class Reading:
         return False
 
 
-_STATE = ("took_off", "listed", "subgoals", "seeks_people", "avoid", "keep_away", "slowly", "carried", "named", "told")
+_STATE = (
+    "took_off",
+    "listed",
+    "subgoals",
+    "seeks_people",
+    "sought_at",
+    "avoid",
+    "keep_away",
+    "slowly",
+    "carried",
+    "named",
+    "told",
+)
 
 
 def is_person(reference: Reference) -> bool:

@@ -168,6 +168,9 @@ def _task(text: str, reading: Reading, capabilities: Capabilities) -> Task:
         raise InstructionError(
             f"'{reading.told.phrase}' is said to be there, but no step takes it up: say what is to be done with it"
         )
+    if reading.sought_at is not None and reading.sought_at < len(reading.subgoals):
+        later = reading.subgoals[reading.sought_at].reference.phrase
+        refuse(later, "would be done before or after the search for people, whichever is shorter: say the search last")
     if reading.seeks_people and not any(is_person(g.reference) for g in reading.subgoals):
         reading.add(Action.GO, HURT_PEOPLE)
     if not reading.subgoals and reading.took_off:

@@ -104,14 +104,14 @@ def seek(reading: Reading, found: Found) -> None:
     said = found.said.get("SOMEBODY", "")
     if said.endswith(" else") and not found.said.keys() & {"HELP", "STATES", "HERE"}:
         reading.words.fail()
-    reading.seeks_people = True
+    reading.seeks_people, reading.sought_at = True, len(reading.subgoals)
 
 
 def seek_too(reading: Reading, found: Found) -> None:
     """``… and anybody else who needs help``: the verb is the one before."""
     if not reading.subgoals or not found.said["EVERYBODY"].endswith(" else"):
         reading.words.fail()
-    reading.seeks_people = True
+    seek(reading, found)
 
 
 def count(reading: Reading, found: Found) -> None:
