@@ -33,9 +33,9 @@ from mintpilot.core.ports import Understand
 from mintpilot.core.query import Answer, Question, Reply, Standing
 from mintpilot.interaction.answers import answer_of
 from mintpilot.interaction.scripted import FunctionOperator, ScriptedOperator
-from mintpilot.language.doubles import FunctionModel
 from mintpilot.mission.loop import fly_mission
 from mintpilot.mission_file.schema import MissionFile
+from mintpilot.models.doubles import FunctionModel
 from mintpilot.recording.recorders import MemoryRecorder
 from mintpilot.simulation.truth import SceneTruth
 
