@@ -68,7 +68,9 @@ def plan_mission(
     file, folder = _opened(mission, base)
     with talk_for(file.language, llm=llm, lang=lang) as talk:
         arguments = _arguments(file, strategy, strategy_arguments)
-        choices = Choices(strategy=strategy, strategy_arguments=arguments, planner=planner)
+        choices = Choices(
+            strategy=strategy, strategy_arguments=arguments, planner=planner, vehicle=VehicleChoice.KINEMATIC
+        )
         return _planned(file, folder, talk, choices, seed=seed)
 
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from mintpilot.assembly.briefing import briefing_of
 from mintpilot.assembly.policies import make_metric, make_planner
-from mintpilot.assembly.stated_looks import with_stated_looks
+from mintpilot.assembly.stated_looks import settled_looks, with_stated_looks
 from mintpilot.assembly.strategies import Argument, make_objective, make_strategy, strategy_label
 from mintpilot.assembly.talk import Talk
 from mintpilot.assembly.worlds import World
@@ -87,8 +87,9 @@ def deliberation_parts(world: World, choices: Choices, talk: Talk | None = None)
         InputError: the strategy does not take those arguments.
     """
     asking = world.mission.asking
+    kinematic = choices.vehicle is VehicleChoice.KINEMATIC or (choices.vehicle is VehicleChoice.MUJOCO and world.is_map)
     return DeliberationParts(
-        mission=world.mission,
+        mission=replace(world.mission, looks=settled_looks(world, kinematic=kinematic)),
         task=world.task,
         planner=make_planner(choices.planner),
         strategy=make_strategy(choices.strategy, seed=world.seed, arguments=choices.strategy_arguments),
@@ -165,6 +166,7 @@ class _Components(AbstractContextManager[MissionComponents]):
         self._world, self._choices, self._operators, self._recorder = world, choices, operators, recorder
         self._talk, self._digests = talk, digests
         self._perception: Perception | None = None
+        self._left_out = ""
         self._stack = ExitStack()
 
     def __enter__(self) -> MissionComponents:
@@ -255,7 +257,8 @@ class _Components(AbstractContextManager[MissionComponents]):
         from mintpilot.assembly.perceiving import remarks_of
 
         seen = () if self._perception is None else tuple(remarks_of(self._perception))
-        return (*self._talk.take_remarks(), *seen)
+        left_out, self._left_out = self._left_out, ""
+        return (*self._talk.take_remarks(), *seen, *((left_out,) if left_out else ()))
 
     def _made(
         self,
@@ -285,6 +288,9 @@ class _Components(AbstractContextManager[MissionComponents]):
         self, vehicle: Vehicle, source: MapSource, *, known: SemanticMap | None, watch_map: bool
     ) -> MissionComponents:
         parts = deliberation_parts(self._world, self._choices, self._talk)
+        unsettled = [look.gap for look in self._world.mission.looks if look not in parts.mission.looks]
+        if unsettled:
+            self._left_out = f"Nothing here settles a look at {', '.join(unsettled)}: such looks are left out."
         briefed = self._choices.briefs or self._world.task.needs_confirmation
         return MissionComponents(
             parts=parts,
