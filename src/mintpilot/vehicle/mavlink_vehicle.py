@@ -103,6 +103,10 @@ class MavlinkVehicle(Vehicle):
         """Share of the battery that is left; None: not told."""
         return self._snapshot.seen.battery if self._snapshot is not None else None
 
+    def tilt(self) -> tuple[float, float]:
+        """Roll to the right and pitch nose up, as they were heard last, radians."""
+        return self._snapshot.seen.tilt_rad if self._snapshot is not None else (0.0, 0.0)
+
     def readiness(self, longest_s: float = 30.0) -> tuple[Check, ...]:
         """Waits until the autopilot may be armed, and until its battery is told, at most so many seconds."""
         end_s = self._now() + longest_s

@@ -64,6 +64,7 @@ class MavsdkLink:
         self._answers: queue.SimpleQueue[Did] = queue.SimpleQueue()
         self._workers = ThreadPoolExecutor(2, thread_name_prefix="mavlink-command")
         self._streams = False
+        self._offboard: Offboard | None = None
         self._rates_s, self._counted, self._best_hz = clock(), 0, 0.0
         self._mavsdk, self._system = connected(address)
         self._system_id = int(self._system.get_system_id())
@@ -177,7 +178,7 @@ class MavsdkLink:
         from mavsdk.plugins.telemetry import Telemetry as TelemetryPlugin
 
         self._action, self._param = ActionPlugin(system), Param(system)
-        self._offboard: Offboard | None = self._open_offboard(system)
+        self._offboard = self._open_offboard(system)
         self._geofence, self._direct = Geofence(system), MavlinkDirect(system)
         self._health = TelemetryPlugin(system)
 

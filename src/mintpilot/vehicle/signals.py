@@ -50,6 +50,8 @@ class Seen:
     position_m: Vec3 = (0.0, 0.0, 0.0)
     velocity_mps: Vec3 = (0.0, 0.0, 0.0)
     yaw_rad: float = 0.0
+    tilt_rad: tuple[float, float] = (0.0, 0.0)
+    """Roll to the right, pitch nose up."""
     position_known: bool = False
     """Whether the autopilot itself counts its local position as good."""
     mode: Mode = Mode.OTHER

@@ -63,6 +63,7 @@ class Telemetry:
         self.ned_m: Vec3 | None = None
         self._velocity_ned: Vec3 = (0.0, 0.0, 0.0)
         self._heading_rad = 0.0
+        self._tilt_rad = (0.0, 0.0)
         self.positions = 0
         self._message_s = self._heartbeat_s = self._position_s = self._global_s = -1e9
         self._every_s = 1.0
@@ -106,6 +107,7 @@ class Telemetry:
                 self._position(fields, time_s)
             case "ATTITUDE":
                 self._heading_rad = _number(fields, "yaw", self._heading_rad)
+                self._tilt_rad = (_number(fields, "roll", 0.0), _number(fields, "pitch", 0.0))
             case "EXTENDED_SYS_STATE":
                 self._on_ground = _number(fields, "landed_state", 0) == ON_GROUND
             case "BATTERY_STATUS" if _number(fields, "battery_function", 0) in FLIES_US:
@@ -136,6 +138,7 @@ class Telemetry:
             position_m=frame.from_ned(self.ned_m or (0.0, 0.0, 0.0)),
             velocity_mps=frame.velocity_from_ned(self._velocity_ned),
             yaw_rad=frame.yaw_from_ned(self._heading_rad),
+            tilt_rad=self._tilt_rad,
             position_known=self.knows_position,
             mode=mode,
             mode_name=name,
