@@ -35,6 +35,8 @@ LONGEST_S = 150.0
 STILL_MPS = 0.2
 PROCESSES = ("loop hangs", "loop killed", "link process killed")
 NONE = "none"
+EARLY = (Fault.REFUSE_ARM, Fault.NO_GRIPPER, Fault.NO_GPS)
+"""Those that are there from the beginning."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -82,7 +84,7 @@ def fly(flavour: Flavour, fault: str) -> Row:
     """One mission with that fault."""
     world = build_world(read_mission(MISSION), base=MISSION.parent, seed=0)
     port = free_port()
-    early = fault in (Fault.REFUSE_ARM, Fault.NO_GRIPPER)
+    early = fault in EARLY
     setup = DoubleSetup(flavour=flavour, port=port, scene=world.scene, rules=world.rules)
     with VehicleDouble(setup) as double, tempfile.TemporaryDirectory() as folder:
         if early:
@@ -182,6 +184,7 @@ def section(rows: list[Row]) -> Section:
             "after, s",
             "on the ground after, s",
             "touched",
+            "reason told",
         ],
         rows=[
             [
@@ -192,6 +195,7 @@ def section(rows: list[Row]) -> Section:
                 _seconds(r.safe_s),
                 _seconds(r.landed_s),
                 r.touched or "-",
+                r.reason or "-",
             ]
             for r in faults
         ],
@@ -201,7 +205,7 @@ def section(rows: list[Row]) -> Section:
         title="Real flight links, against the vehicle double",
         command="python -m bench.vehicle",
         how=f"The medicine mission (seed 0), over MAVSDK and UDP on this machine; the fault comes {BEFORE_S:g} s after "
-        "the drone has set out, refuse-arm and no-gripper from the beginning. Safe: on the ground, slower than "
+        f"the drone has set out, {', '.join(EARLY)} from the beginning. Safe: on the ground, slower than "
         f"{STILL_MPS:g} m/s for a second, or in the pilot's hands.",
         tables=[spacing, table],
         notes=["The double is no firmware: what autopilots do by themselves is modelled after what was seen of them."],

@@ -245,7 +245,9 @@ class MissionFile(Spec):
     """What every flight keeps from take-off to its end. Hard: where a rule cannot be kept, stops are left undone."""
     looks: Several[LookSpec] = ()
     """From where regions can be looked at: a look competes with questions by what it tells a second
-    (`asking.reply_s`). On given maps and with the kinematic simulator; a camera sees by itself."""
+    (`asking.reply_s`). What it sees counts as a yes does: for the outline that it saw, for `answer_valid_s`. Only the
+    kinematic simulator settles looks, where it knows how things truly are; elsewhere they are left out, and that is
+    said."""
     people_price_s: NotNegative | None = None
     """What leaving somebody unseen costs, seconds of flight; default: `asking.failure_price_s`."""
     vehicle: VehicleSpec = VehicleSpec()

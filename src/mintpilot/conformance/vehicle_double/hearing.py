@@ -9,7 +9,7 @@ from typing import Any
 from mintpilot.conformance.vehicle_double.autopilot import DoubleAutopilot, DoubleMode
 from mintpilot.conformance.vehicle_double.body import Target
 from mintpilot.conformance.vehicle_double.faults import Fault
-from mintpilot.conformance.vehicle_double.fence import HOME_ALTITUDE_M, fence_of
+from mintpilot.conformance.vehicle_double.fence import HOME_ALTITUDE_M, ORIGIN_M, fence_of
 from mintpilot.conformance.vehicle_double.parameters import Flavour
 from mintpilot.conformance.vehicle_double.speaking import Speaker, mode_numbered
 
@@ -80,7 +80,9 @@ class Hearer:
         values = (message.x, message.y, message.z, message.vx, message.vy, message.vz, message.yaw)
         if message.coordinate_frame != LOCAL_NED or not all(math.isfinite(v) for v in values):
             return
-        place = (message.x, message.y, message.z) if not message.type_mask & 7 else self._autopilot.body.ned_m
+        (n, e, d), place = ORIGIN_M, self._autopilot.body.ned_m
+        if not message.type_mask & 7:
+            place = (message.x + n, message.y + e, message.z + d)
         velocity = (message.vx, message.vy, message.vz) if not message.type_mask & 56 else (0.0, 0.0, 0.0)
         heading = None if message.type_mask & 1024 else message.yaw
         self._autopilot.set_point(Target(ned_m=place, velocity=velocity, heading_rad=heading))
@@ -101,9 +103,10 @@ class Hearer:
                 refusal = self._autopilot.change_mode(DoubleMode.RETURN)
             case m.MAV_CMD_DO_GRIPPER if Fault.NO_GRIPPER not in self._autopilot.faults:
                 self._autopilot.gripper, refusal = ("closed" if message.param2 > 0.5 else "open"), ""
+            case m.MAV_CMD_DO_GRIPPER if self._autopilot.flavour is Flavour.PX4:
+                return  # nobody in PX4 answers for a gripper that is not there
             case m.MAV_CMD_SET_MESSAGE_INTERVAL:
-                self._set_rate(int(message.param1), message.param2)
-                refusal = ""
+                refusal = self._set_rate(int(message.param1), message.param2)
             case m.MAV_CMD_REQUEST_MESSAGE:
                 wanted = self._speaker.message(int(message.param1), self._now_s)
                 self._acknowledge(message, m.MAV_RESULT_UNSUPPORTED if wanted is None else m.MAV_RESULT_ACCEPTED)
@@ -112,7 +115,7 @@ class Hearer:
                 return
             case _:
                 pass
-        if refusal:
+        if refusal and message.command != m.MAV_CMD_SET_MESSAGE_INTERVAL:
             self._autopilot.texts.append(refusal)
         results = {None: m.MAV_RESULT_UNSUPPORTED, "": m.MAV_RESULT_ACCEPTED}
         self._acknowledge(message, results.get(refusal, m.MAV_RESULT_TEMPORARILY_REJECTED))
@@ -141,11 +144,15 @@ class Hearer:
             height if math.isfinite(height) and 0 < height < 500 else self._autopilot.parameters["MIS_TAKEOFF_ALT"]
         )
 
-    def _set_rate(self, number: int, interval_us: float) -> None:
+    def _set_rate(self, number: int, interval_us: float) -> str:
+        """Why not: a message that it has not, and PX4 keeps its heartbeat at one a second."""
+        if not self._speaker.has(number) or (number == 0 and self._autopilot.flavour is Flavour.PX4):
+            return "that rate cannot be set"
         if interval_us > 0:
             self._speaker.rates_hz[number] = min(1e6 / interval_us, 50.0)
         elif interval_us < 0:
             self._speaker.rates_hz.pop(number, None)
+        return ""
 
     def _parameter(self, message: Any) -> None:
         parameters = self._autopilot.parameters

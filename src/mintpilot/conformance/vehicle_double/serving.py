@@ -8,7 +8,7 @@ import signal
 import socket
 import time
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from multiprocessing.connection import Connection
 from types import TracebackType
 from typing import Any, Self
@@ -27,6 +27,8 @@ from mintpilot.simulation.scene import FlightRules, Scene
 STEP_S = 0.01
 READY_S = 60.0
 CLOSING_S = 3.0
+GIMBAL = 154
+"""Component id of its gimbal, which sends heartbeats of its own: they say nothing of the autopilot."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -66,6 +68,8 @@ class DoubleState:
     verdict: str
     """What it flew into or out of; empty: nothing."""
     camera_port: int | None = None
+    rates_hz: dict[int, float] = field(default_factory=dict)
+    """Message id → how often it is sent."""
 
 
 class DoubleLoop:
@@ -83,6 +87,7 @@ class DoubleLoop:
         self._hearer = Hearer(self.autopilot, self._speaker, self._m, self._send)
         self._mav = self._m.MAVLink(None, srcSystem=1, srcComponent=1)
         self._mav.robust_parsing = True
+        self._gimbal, self._gimbal_s = self._m.MAVLink(None, srcSystem=1, srcComponent=GIMBAL), 0.0
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         self._socket.setblocking(False)
         self._out, self._in = Wire(setup.seed), Wire(setup.seed + 1)
@@ -115,6 +120,11 @@ class DoubleLoop:
         self._hearer.due(now_s)
         for message in self._speaker.due(now_s):
             self._send(message)
+        if now_s >= self._gimbal_s:
+            self._gimbal_s = now_s + 1.0
+            m = self._m
+            beat = m.MAVLink_heartbeat_message(m.MAV_TYPE_GIMBAL, m.MAV_AUTOPILOT_INVALID, 0, 0, m.MAV_STATE_ACTIVE, 3)
+            self._send(beat, self._gimbal)
         for packet in self._out.due(now_s):
             with suppress(OSError):
                 self._socket.sendto(packet, ("127.0.0.1", self._setup.port))
@@ -136,6 +146,7 @@ class DoubleLoop:
             mission_commands=self._hearer.mission_commands,
             verdict=self._place.verdict if self._place is not None else "",
             camera_port=self.camera_port,
+            rates_hz=dict(self._speaker.rates_hz),
         )
 
     def close(self) -> None:
@@ -158,9 +169,10 @@ class DoubleLoop:
                 if message.get_type() != "BAD_DATA":
                     self._hearer.hear(message, now_s)
 
-    def _send(self, message: Any) -> None:
-        packet = message.pack(self._mav)
-        self._mav.seq = (self._mav.seq + 1) % 256
+    def _send(self, message: Any, who: Any | None = None) -> None:
+        mav = who or self._mav
+        packet = message.pack(mav)
+        mav.seq = (mav.seq + 1) % 256
         if Fault.SILENCE not in self.autopilot.faults:
             self._out.put(packet, time.monotonic() - self._begun_s, self.autopilot.faults)
 
