@@ -70,8 +70,8 @@ def read_mission(path: str | Path) -> MissionFile:
     Raises:
         MissionFileError: the file cannot be read or has mistakes; all of them are in the message and in ``problems``.
     """
-    mission, problems = _read(Path(path))
-    if mission is None or problems:
+    mission, problems = read_or_find_problems(path)
+    if mission is None:
         raise MissionFileError(problems)
     return mission
 
@@ -97,7 +97,21 @@ def check_contents(mission: MissionFile, base: Path) -> None:
 
 def find_problems(path: str | Path) -> list[Problem]:
     """Every mistake in that mission file, in the order of its lines; empty when it is sound."""
-    return _read(Path(path))[1]
+    return read_or_find_problems(path)[1]
+
+
+def read_or_find_problems(path: str | Path) -> tuple[MissionFile | None, list[Problem]]:
+    """The mission in that file, or None with every mistake in it."""
+    file = Path(path)
+    if file.suffix in SUFFIXES:
+        return None, _placed([refused_as_mission(file)], Document(), file)
+    document = read_document(file)
+    mission, faults = None, document.faults
+    if not faults:
+        mission, faults = _formed(document, file.parent)
+    if mission is not None:
+        faults = list(contradictions(mission, file.parent))
+    return (None if faults else mission), _placed(faults, document, file)
 
 
 def place_problems(path: str | Path, mistakes: Sequence[tuple[Place, str]]) -> list[Problem]:
@@ -125,18 +139,6 @@ def json_schema() -> str:
 def path_text(path: Path_) -> str:
     """``("regions", 0, "id")`` as ``regions[0].id``."""
     return "".join(f"[{step}]" if isinstance(step, int) else f".{step}" for step in path).lstrip(".")
-
-
-def _read(path: Path) -> tuple[MissionFile | None, list[Problem]]:
-    if path.suffix in SUFFIXES:
-        return None, _placed([refused_as_mission(path)], Document(), path)
-    document = read_document(path)
-    mission, faults = None, document.faults
-    if not faults:
-        mission, faults = _formed(document, path.parent)
-    if mission is not None:
-        faults = list(contradictions(mission, path.parent))
-    return mission, _placed(faults, document, path)
 
 
 def _formed(document: Document, base: Path) -> tuple[MissionFile | None, list[Fault]]:
