@@ -15,7 +15,7 @@ from mintpilot.core.plan import LeftUndone, Plan, Prospect, Stop
 from mintpilot.core.query import Answer, Query, Question
 from mintpilot.core.semantic_map import SemanticMap
 from mintpilot.core.task import Task
-from mintpilot.core.told import Standing, ToldFact
+from mintpilot.core.told import ToldFact
 from mintpilot.core.trajectory import VehicleState
 from mintpilot.core.tree import GapExplanation, ScoredQuery
 from mintpilot.mission.belief_state import BeliefState
@@ -173,6 +173,8 @@ class Telling:
     """Since when it counts, mission clock."""
     shown: SemanticMap | None = None
     """The map that the operator saw, while it is read back."""
+    read_back_s: float = 0.0
+    """Since when it, or taking it back, is read back, mission clock."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -306,7 +308,7 @@ class MissionState:
             times.append(self.question.moves_s)
         if self.beliefs is not None:
             times += [g.given_s + self.setup.mission.asking.answer_valid_s for g in self.beliefs.grants]
-        times += [one.known.told_s + READ_BACK_S for one in self.told if one.known.standing is Standing.READ_BACK]
+        times += [one.read_back_s + READ_BACK_S for one in self.told if one.known.read_back]
         if self.request is not None:
             times.append(self.request.deadline_s)
         return min(times, default=float("inf"))

@@ -158,9 +158,10 @@ def _proceed_without_map(t: Transition) -> None:
 def _tick(t: Transition, event: Ticked) -> None:
     if event.vehicle is not None:
         t.set(vehicle=event.vehicle, ready=t.state.task_begun_s is not None)
-    question, request = t.state.question, t.state.request
+    question = t.state.question
     if question is not None and t.state.clock_s >= question.deadline_s:
         clearing.unanswered(t) if t.state.grounded else asking.unanswered(t)
+    request = t.state.request  # what was worked out for that question has ended with it
     if request is not None and t.state.clock_s >= request.deadline_s:
         _without_decision(t, request, "the deliberation is overdue")
     if t.state.beliefs is not None:
