@@ -143,12 +143,15 @@ def _link_process(parent: int) -> int:
 
 
 def _ended(mission: subprocess.Popen[str], double: VehicleDouble) -> tuple[str, str]:
+    waits = double.state().mode == "follow"
     mission.send_signal(signal.SIGCONT)
     try:
         said, _ = mission.communicate(timeout=20)
-    except subprocess.TimeoutExpired:  # it keeps its heartbeats up while a pilot flies
+    except subprocess.TimeoutExpired:  # it keeps its heartbeats up while a pilot flies, or hovers for a helping hand
         double.switch_on(Fault.SILENCE)
         said, _ = mission.communicate(timeout=60)
+        if waits:
+            return "none yet", f"it still hovered after {LONGEST_S:g} s; the link was cut then"
     try:
         report = json.loads(said.strip().splitlines()[-1])
     except (IndexError, ValueError):

@@ -108,6 +108,8 @@ def _stand_alone() -> None:
         os.setsid()
     with suppress(OSError):
         os.nice(-10)
+    with suppress(OSError, AttributeError):  # where that is allowed: whenever it wants a core, it gets one
+        os.sched_setscheduler(0, os.SCHED_RR, os.sched_param(1))
 
 
 class _LinkLoop:
