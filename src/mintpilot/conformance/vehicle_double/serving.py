@@ -264,7 +264,7 @@ def _waited_s(told: list[tuple[int, int, bytes]]) -> float:
     for level, kind, data in told:
         if level == socket.SOL_SOCKET and kind == SO_TIMESTAMPNS and len(data) == STAMP.size:
             seconds, nanoseconds = STAMP.unpack(data)
-            return max(time.time() - seconds - 1e-9 * nanoseconds, 0.0)
+            return max(time.time() - float(seconds) - 1e-9 * float(nanoseconds), 0.0)
     return 0.0
 
 
