@@ -135,6 +135,7 @@ class _LinkLoop:
                 self._step(answer)
             self._step(Tick(time_s=time.monotonic(), seen=self._seen()))
             self._link.keep_rates()
+            self._link.keep_beating()
             snapshot = Snapshot(time_s=time.monotonic(), seen=self._state.seen, phase=self._state.phase)
             self._channel.show(snapshot)
 
