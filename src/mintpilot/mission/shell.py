@@ -21,7 +21,7 @@ from mintpilot.core.inputs import (
     QuestionShown,
     Ticked,
 )
-from mintpilot.core.mission import Outcome, Verdict
+from mintpilot.core.mission import Outcome, Sight, Verdict
 from mintpilot.core.ports import Operator
 from mintpilot.core.query import Question
 from mintpilot.mission.components import MissionComponents
@@ -154,9 +154,14 @@ class Shell:
             if believed.outcome not in (Outcome.SUCCESS, Outcome.PARTIAL):
                 return believed
             failure = judge.final()
+            unseen = any(look.result is Sight.UNSEEN for look in believed.looks)
+            if unseen and failure.outcome is Outcome.SUCCESS:
+                return believed
             if believed.outcome is Outcome.PARTIAL and failure.outcome in (Outcome.PERSON_MISSED, Outcome.NOT_REACHED):
                 return believed
-        return replace(failure, achieved=believed.achieved, left=believed.left, waiting=believed.waiting)
+        return replace(
+            failure, achieved=believed.achieved, left=believed.left, looks=believed.looks, waiting=believed.waiting
+        )
 
     def close(self) -> None:
         """Leaves the vehicle holding, and ends the worker."""
