@@ -231,6 +231,7 @@ def _motion_ended(t: Transition, event: MotionEnded) -> None:
         t.finish(Outcome.VEHICLE_FAILED, event.reason or "The vehicle could not go on.")
         return
     stopped = event.end is not MotionEnd.ARRIVED
+    t.set(view=event.view)
     match activity:
         case Activity.SWEEP if t.state.goal is Goal.SURVEY and not stopped:
             t.observe(Activity.SWEPT, look=False)
