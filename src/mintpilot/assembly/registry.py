@@ -80,9 +80,9 @@ BUILT_IN: Final = MappingProxyType(
         ),
         "language": MappingProxyType(
             {
-                "template": "mintpilot.language.doubles:NoModel",
-                "endpoint": "mintpilot.language.endpoint:EndpointModel",
-                "embedded": "mintpilot.language.embedded:EmbeddedModel",
+                "template": "mintpilot.models.doubles:NoModel",
+                "endpoint": "mintpilot.models.endpoint:EndpointModel",
+                "embedded": "mintpilot.models.embedded:EmbeddedModel",
             }
         ),
         "speech": MappingProxyType(

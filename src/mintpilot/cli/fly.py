@@ -95,6 +95,8 @@ class FlightOptions:
     """What makes objects of pictures, by name; None: as the mission file says."""
     accept_failsafes: bool = False
     """Fly a real vehicle whose autopilot's fail-safes are not as they should be."""
+    camera: str = ""
+    """Where a real vehicle's pictures come from; empty: nowhere."""
     earlier: Path | None = None
     """Run folder whose map the mission begins with; None: it makes its own."""
     voice: VoiceFlags = VoiceFlags()
@@ -157,6 +159,7 @@ def fly(path: Path, options: FlightOptions) -> ExitCode:
                 lang=options.lang,
                 perception=options.perception,
                 accept_failsafes=options.accept_failsafes,
+                camera=options.camera,
                 earlier=options.earlier,
                 views=served is not None,
                 briefs=served is not None or (_somebody(errors) and options.operators != ("scripted",)),

@@ -129,6 +129,7 @@ def run(
     perception: str | None = None,
     map: Path | None = None,
     accept_failsafes: Flag = False,
+    camera: str = "",
     host: str | None = None,
     port: Port = None,
     tls_cert: Path | None = None,
@@ -161,6 +162,8 @@ def run(
         map: Run folder of an earlier mission in the same place: this one begins with its map, in place of a survey. Its
             age is told; what was free is looked at again as it comes into view; what was permitted is asked again.
         accept_failsafes: Fly a real vehicle although its autopilot's fail-safes are not as they should be.
+        camera: Of a real vehicle: where its pictures come from: realsense:, sim://127.0.0.1:PORT, a recording as for
+            'see', or a plug-in's. The map is then made in flight. Default: none, the map is given.
         host: Of the web page: where it is served. Default: 127.0.0.1, for this machine only; elsewhere with TLS only.
         port: Of the web page. Default: any that is free.
         tls_cert: Of the web page: its certificate, PEM.
@@ -222,6 +225,7 @@ def run(
         perception=perception,
         earlier=map,
         accept_failsafes=accept_failsafes,
+        camera=camera,
     )
     return guarded(lambda: fly(mission, options), as_json=json, debug=debug)
 

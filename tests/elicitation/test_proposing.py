@@ -8,16 +8,15 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tests.language import questions
 
 from mintpilot.core.errors import DeviceError, InputError
 from mintpilot.core.gap import PASSABLE, Assumptions, Joint
 from mintpilot.core.query import Combine
 from mintpilot.core.tree import Mint, Node, PlanClass
-from mintpilot.language.doubles import FunctionModel, NoModel
+from mintpilot.elicitation.proposing import propose_cuts
 from mintpilot.language.instruction_model import parse_with_model
-from mintpilot.language.proposing import propose_cuts
-
-from . import questions
+from mintpilot.models.doubles import FunctionModel, NoModel
 
 GAPS = (questions.SMOKE_GAP, questions.BOX_GAP)
 TREE = Mint(

@@ -17,7 +17,7 @@ from mintpilot.core.gap import KnowledgeGap
 from mintpilot.core.ports import LanguageModel
 from mintpilot.core.query import Query, Question
 from mintpilot.core.tree import Mint
-from mintpilot.language.checking import doubt
+from mintpilot.wording.checking import doubt
 
 WORDING_S = 1.2
 """A question must be out within 1.5 s of the cut: so long is better wording waited for."""

@@ -8,9 +8,8 @@ from __future__ import annotations
 
 import re
 
-from mintpilot.core.gap import ABSENT, BLOCKED, PASSABLE, PRESENT, GapKind, KnowledgeGap
+from mintpilot.core.gap import ABSENT, BLOCKED, PASSABLE, PRESENT, Candidate, GapKind, KnowledgeGap
 from mintpilot.core.query import Question, SayingKind
-from mintpilot.language.referring import mention
 
 MAX_WORDS = 20
 _MAX_CHARACTERS = 160
@@ -81,15 +80,21 @@ def _property(words: list[str], question: Question, gap: KnowledgeGap) -> str:
 
 
 def _target(words: list[str], question: Question, gap: KnowledgeGap) -> str:
-    """For referents: the words must leave exactly the candidates of the cut."""
+    """For referents: only the template's words, and they must leave exactly the candidates of the cut."""
     (literal,) = question.query.literals
     if literal.saying.kind not in (SayingKind.VALUE, SayingKind.ATTRIBUTE):
         return "a relation is worded by template"
-    said = mention(" ".join(words), (gap,))
-    if said.values != literal.values:
-        return f"means {sorted(said.values) or 'none'} instead of {sorted(literal.values)}"
+    fits = [{c.id for c in gap.candidates if word in _words_of(c)} for word in words]
+    said = set(gap.values).intersection(*(some for some in fits if 0 < len(some) < len(gap.candidates)))
+    if said != literal.values:
+        return f"means {sorted(said) or 'none'} instead of {sorted(literal.values)}"
     nouns = {form for word in _plain(gap.description) for form in (word, f"{word}s", f"{word}es")}
     return _unknown(words, nouns | set(_plain(question.text)))
+
+
+def _words_of(candidate: Candidate) -> set[str]:
+    """Words that the candidate's attributes and its description are made of."""
+    return set(_plain(" ".join((*(a.value for a in candidate.attributes), candidate.description))))
 
 
 def _plain(text: str) -> list[str]:

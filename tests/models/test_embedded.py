@@ -11,10 +11,10 @@ from pathlib import Path
 import pytest
 
 from mintpilot.core.errors import DeviceError, InputError, MissingPartError
-from mintpilot.language import gguf
-from mintpilot.language.doubles import ReplayModel
-from mintpilot.language.embedded import EmbeddedModel
-from mintpilot.language.gguf import find_model, join_parts, part_files
+from mintpilot.models import gguf
+from mintpilot.models.doubles import ReplayModel
+from mintpilot.models.embedded import EmbeddedModel
+from mintpilot.models.gguf import find_model, join_parts, part_files
 
 needs_runtime = pytest.mark.skipif(find_spec("xllamacpp") is None, reason="xllamacpp is not installed")
 

@@ -18,7 +18,7 @@ from pydantic import BaseModel
 
 from mintpilot.core.errors import DeviceError, MissingPartError
 from mintpilot.core.ports import Completion, LanguageModel
-from mintpilot.language.gguf import find_model
+from mintpilot.models.gguf import find_model
 
 _MOST_TOKENS = 200
 _LOAD_S = 60.0
@@ -32,7 +32,7 @@ class EmbeddedModel(LanguageModel):
     A completion that comes too late is thrown away; a process that hangs or dies is started again at the next call.
 
     Args:
-        path: the GGUF file; default: see `mintpilot.language.gguf.find_model`.
+        path: the GGUF file; default: see `mintpilot.models.gguf.find_model`.
         environment: where the path is looked for.
 
     Raises:
@@ -94,7 +94,7 @@ class EmbeddedModel(LanguageModel):
 
     def _start(self) -> None:
         self._process = subprocess.Popen(
-            [sys.executable, "-m", "mintpilot.language.embedded_worker", str(self._path)],
+            [sys.executable, "-m", "mintpilot.models.embedded_worker", str(self._path)],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,

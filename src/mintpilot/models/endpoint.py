@@ -21,7 +21,7 @@ from pydantic import BaseModel
 
 from mintpilot.core.errors import DeviceError, InputError, MintPilotError, MissingPartError, UnknownNameError
 from mintpilot.core.ports import Completion, LanguageModel, VisionModel
-from mintpilot.language.deadline import within
+from mintpilot.models.deadline import within
 
 URL_VARIABLE = "MINTPILOT_LLM_URL"
 MODEL_VARIABLE = "MINTPILOT_LLM_MODEL"
@@ -88,7 +88,7 @@ class EndpointModel(LanguageModel, VisionModel):
                 "a language model server is spoken to with 'pydantic-ai': pip install 'mintpilot[llm]'"
             )
         # Two seconds of importing belong to the start, not to the deadline of the first question.
-        self._client = import_module("mintpilot.language.endpoint_client")
+        self._client = import_module("mintpilot.models.endpoint_client")
 
     def complete(self, prompt: str, *, schema: type | None, timeout_s: float) -> Completion:
         """One completion; see `LanguageModel.complete`."""

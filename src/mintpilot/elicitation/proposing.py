@@ -10,12 +10,14 @@ import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from pydantic import Field
+
 from mintpilot.core.errors import MintPilotError
 from mintpilot.core.gap import PASSABLE, PRESENT, GapKind, KnowledgeGap
 from mintpilot.core.ports import LanguageModel
-from mintpilot.core.query import Literal, Query, Saying, SayingKind
+from mintpilot.core.query import Combine, Literal, Query, Saying, SayingKind
 from mintpilot.core.tree import Mint
-from mintpilot.language.forms import Cut, CutPart, Cuts, read_form
+from mintpilot.models.forms import StrictForm, read_form
 
 PROPOSING_S = 1.2
 _MOST_CLASSES = 6
@@ -28,6 +30,27 @@ Possible plans: {plans}
 A cut has parts {{"gap": id, "value": value}}, or {{"gap": id, "attribute": name, "value": value}} for a property of \
 the thing that is meant; several parts are combined by "all" or "any".
 Answer with JSON only: {{"cuts": [{{"parts": [...], "combine": "all"}}]}}"""
+
+
+class CutPart(StrictForm):
+    """``gap`` has ``value``; with ``attribute``, what the gap's phrase means has that attribute."""
+
+    gap: str = Field(max_length=200)
+    value: str = Field(max_length=200)
+    attribute: str = Field(default="", max_length=100)
+
+
+class Cut(StrictForm):
+    """One proposed cut."""
+
+    parts: list[CutPart] = Field(min_length=1, max_length=3)
+    combine: Combine = Combine.ALL
+
+
+class Cuts(StrictForm):
+    """What a model proposes to ask."""
+
+    cuts: list[Cut] = Field(max_length=20)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -8,17 +8,16 @@ from dataclasses import replace
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tests.language import questions
 
 from mintpilot.core.errors import DeviceError
 from mintpilot.core.gap import KnowledgeGap
 from mintpilot.core.ports import Completion, LanguageModel
 from mintpilot.core.query import Literal, Query, Question, Saying, SayingKind
 from mintpilot.core.tree import Mint
-from mintpilot.language.checking import doubt
-from mintpilot.language.doubles import FunctionModel, NoModel, ReplayModel
-from mintpilot.language.wording import ModelWording
-
-from . import questions
+from mintpilot.models.doubles import FunctionModel, NoModel, ReplayModel
+from mintpilot.wording.checking import doubt
+from mintpilot.wording.rewording import ModelWording
 
 GOOD = [
     (questions.SMOKE, "Is it safe to fly through the grey smoke near the gate?"),

@@ -1,7 +1,7 @@
 """The process that holds an embedded model: one JSON request a line in, one JSON answer a line out.
 
 A process of its own, so that a time-out can end it and its memory is not the mission's.
-Run as ``python -m mintpilot.language.embedded_worker MODEL.gguf``.
+Run as ``python -m mintpilot.models.embedded_worker MODEL.gguf``.
 """
 
 from __future__ import annotations

@@ -6,16 +6,15 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import pytest
+from tests.language import questions
 
 from mintpilot.core.errors import UnknownNameError
 from mintpilot.core.gap import KnowledgeGap
 from mintpilot.core.query import Combine, Literal, Query, Question, Saying, SayingKind
 from mintpilot.core.tree import Mint
-from mintpilot.language.doubles import FunctionModel, NoModel
-from mintpilot.language.tongues import GERMAN, TONGUES
-from mintpilot.language.translating import consequence, noun_phrase, translated, wording_for
-
-from . import questions
+from mintpilot.models.doubles import FunctionModel, NoModel
+from mintpilot.wording.tongues import GERMAN, TONGUES
+from mintpilot.wording.translating import consequence, noun_phrase, translated, wording_for
 
 
 def _template_of(question: Question):  # type: ignore[no-untyped-def]

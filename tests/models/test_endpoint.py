@@ -16,17 +16,16 @@ from typing import Any
 
 import pytest
 from pydantic import BaseModel
+from tests.language import questions
 
 from mintpilot.core.errors import DeviceError, InputError, MissingPartError
 from mintpilot.core.query import Reply
-from mintpilot.language import gguf
-from mintpilot.language.answer_model import read_with_model
-from mintpilot.language.endpoint import EndpointModel, OutputMode
-from mintpilot.language.forms import AnswerReading, read_form
+from mintpilot.language.answer_model import AnswerReading, read_with_model
 from mintpilot.language.instruction_model import parse_with_model
-from mintpilot.language.wording import ModelWording
-
-from . import questions
+from mintpilot.models import gguf
+from mintpilot.models.endpoint import EndpointModel, OutputMode
+from mintpilot.models.forms import read_form
+from mintpilot.wording.rewording import ModelWording
 
 pytest.importorskip("pydantic_ai", reason="the client is not installed: pip install 'mintpilot[llm]'")
 
@@ -227,7 +226,7 @@ def test_it_works_inside_a_running_event_loop(server: Server) -> None:
 
 def test_the_client_is_imported_only_where_a_server_is_configured() -> None:
     code = (
-        "import sys, mintpilot.language, mintpilot.language.endpoint, mintpilot.assembly.talk; "
+        "import sys, mintpilot.language, mintpilot.models.endpoint, mintpilot.assembly.talk; "
         "print(sorted({'pydantic_ai', 'openai', 'httpx2'} & set(sys.modules)))"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
@@ -235,7 +234,7 @@ def test_the_client_is_imported_only_where_a_server_is_configured() -> None:
 
 
 def test_without_the_client_the_install_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("mintpilot.language.endpoint.find_spec", lambda _: None)
+    monkeypatch.setattr("mintpilot.models.endpoint.find_spec", lambda _: None)
     with pytest.raises(MissingPartError, match=r"pip install 'mintpilot\[llm\]'"):
         EndpointModel("http://localhost:1/v1", "tiny", environment={})
 

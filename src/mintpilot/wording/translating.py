@@ -14,10 +14,10 @@ from mintpilot.core.gap import PASSABLE, PRESENT, GapKind, KnowledgeGap
 from mintpilot.core.ports import LanguageModel
 from mintpilot.core.query import Combine, Literal, Query, Question, SayingKind
 from mintpilot.core.tree import Mint
-from mintpilot.language.doubles import NoModel
-from mintpilot.language.tongue_places import PLACES, split_places
-from mintpilot.language.tongues import ATTRIBUTE, TONGUES, VALUE, Tongue
-from mintpilot.language.wording import ModelWording, Wording
+from mintpilot.models.doubles import NoModel
+from mintpilot.wording.rewording import ModelWording, Wording
+from mintpilot.wording.tongue_places import PLACES, split_places
+from mintpilot.wording.tongues import ATTRIBUTE, TONGUES, VALUE, Tongue
 
 ENGLISH = "en"
 _NEAR = re.compile(r" (?:near|next to|beside|by|close to|with) (?=the )")

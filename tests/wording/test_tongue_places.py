@@ -7,10 +7,10 @@ import itertools
 import pytest
 
 from mintpilot.core.geometry import Box
-from mintpilot.language.tongue_places import PLACES, split_places
-from mintpilot.language.tongues import TONGUES
-from mintpilot.language.translating import noun_phrase
 from mintpilot.mapping.wording import describe_all
+from mintpilot.wording.tongue_places import PLACES, split_places
+from mintpilot.wording.tongues import TONGUES
+from mintpilot.wording.translating import noun_phrase
 
 HALL = Box(lo_m=(0.0, 0.0, 0.0), hi_m=(9.0, 9.0, 3.0))
 
