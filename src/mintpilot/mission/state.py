@@ -10,9 +10,10 @@ import numpy as np
 from mintpilot.core.briefing import Briefing
 from mintpilot.core.geometry import Floats
 from mintpilot.core.inputs import Link
-from mintpilot.core.mission import Achieved, Mission, Outcome, Verdict, Waiting
+from mintpilot.core.mission import Achieved, Looked, Mission, Outcome, Verdict, Waiting
 from mintpilot.core.plan import LeftUndone, Plan, Prospect, Stop
 from mintpilot.core.query import Answer, Query, Question
+from mintpilot.core.room_view import RoomView
 from mintpilot.core.semantic_map import SemanticMap
 from mintpilot.core.task import Task
 from mintpilot.core.told import ToldFact
@@ -211,6 +212,10 @@ class MissionState:
     """Stops of which nothing could be flown when it was thought about last."""
     achieved: tuple[Achieved, ...] = ()
     """What was done, in order."""
+    looks: tuple[Looked, ...] = ()
+    """What looks into rooms came to, in order."""
+    view: RoomView | None = None
+    """What the vehicle said of the look that it has just ended."""
     leg: int = 0
     """Index of the leg that is flown, or prepared."""
     assume_passable: frozenset[str] = frozenset()
@@ -294,6 +299,12 @@ class MissionState:
     def is_down(self, link: Link) -> bool:
         """Whether that link is down."""
         return any(name is link for name, _ in self.links_down)
+
+    @property
+    def lacks_wanted(self) -> bool:
+        """Whether a place or thing that was asked for is not done; rooms that somebody may be in do not count."""
+        finished = self.beliefs.finished if self.beliefs is not None else frozenset[str]()
+        return any(not stop.optional and stop.id not in finished for stop in self.wanted)
 
     def next_deadline_s(self) -> float:
         """The next moment at which passing time alone changes something, mission clock; infinity: none."""

@@ -41,6 +41,7 @@ from mintpilot.core.trajectory import VehicleState
 from mintpilot.mission import asking, clearing, flying, meanwhile, ordering, surveying, telling
 from mintpilot.mission.belief_state import BeliefState
 from mintpilot.mission.directives import Directive
+from mintpilot.mission.grants import granted
 from mintpilot.mission.path_monitor import with_passable
 from mintpilot.mission.requests import Purpose
 from mintpilot.mission.rule_progress import flown
@@ -174,7 +175,8 @@ def _observed(t: Transition, event: MapObserved) -> None:
         known = frozenset(obstacle_id(r.id) for r in map.regions if r.passable is Knowledge.YES)
         t.set(beliefs=BeliefState(map=map, belief=prior_belief(())), known_passable=known)
     else:
-        t.set(beliefs=replace(beliefs, map=map), known_passable=t.state.known_passable | _seen_passable(t, event))
+        seen = _seen_passable(t, event)  # like a yes: it covers the outline that was seen, and ages
+        t.set(beliefs=granted(replace(beliefs, map=map), seen, map, t.state.clock_s))
         asking.check_permissions(t)
     match t.state.activity:
         case Activity.FIRST_LOOK:
@@ -229,6 +231,7 @@ def _motion_ended(t: Transition, event: MotionEnded) -> None:
         t.finish(Outcome.VEHICLE_FAILED, event.reason or "The vehicle could not go on.")
         return
     stopped = event.end is not MotionEnd.ARRIVED
+    t.set(view=event.view)
     match activity:
         case Activity.SWEEP if t.state.goal is Goal.SURVEY and not stopped:
             t.observe(Activity.SWEPT, look=False)

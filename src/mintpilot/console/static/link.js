@@ -1,6 +1,7 @@
 // The link to the drone: one WebSocket that comes back by itself and loses no command.
 
 const QUIET_MS = 3000; // the server says something every second
+const MOST_WAITING = 64 * 1024; // bytes of sound
 const token = location.hash.slice(1);
 const WAITING = `waiting ${token}`; // what was pressed for another mission is never sent to this one
 
@@ -40,6 +41,9 @@ export class Link extends EventTarget {
     this.#waiting = waiting;
     sessionStorage.setItem(WAITING, JSON.stringify(waiting));
   }
+
+  // Sound is worth nothing later: what the link cannot take now is left out.
+  sound(buffer) { if (this.up && this.#socket.bufferedAmount < MOST_WAITING) this.#socket.send(buffer); }
 
   #tell(kind, detail) { this.dispatchEvent(new CustomEvent(kind, { detail })); }
 
