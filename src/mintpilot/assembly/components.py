@@ -107,10 +107,11 @@ class PartsBesideVehicle:
     world: World
     choices: Choices
     lang: str
+    names: tuple[tuple[str, str], ...]
 
     def __call__(self) -> DeliberationParts:
         """The parts; questions are worded in the mission's language by template, and bettered by the loop."""
-        return deliberation_parts(self.world, self.choices, Talk(lang=self.lang))
+        return deliberation_parts(self.world, self.choices, Talk(lang=self.lang, names=dict(self.names)))
 
 
 def scripted_operator(world: World, spec: OperatorSpec) -> ScriptedOperator:
@@ -241,7 +242,9 @@ class _Components(AbstractContextManager[MissionComponents]):
             )
         vehicle = make_vehicle(world, choices.address, accept_failsafes=choices.accept_failsafes)
         self._stack.callback(vehicle.close)
-        beside = PartsBesideVehicle(world=world, choices=choices, lang=self._talk.lang)
+        beside = PartsBesideVehicle(
+            world=world, choices=choices, lang=self._talk.lang, names=tuple(self._talk.names.items())
+        )
         return replace(
             self._common(vehicle, GivenMap(world.map), known=world.map, watch_map=False),
             worker=lambda _: ProcessWorker(beside),
@@ -300,6 +303,7 @@ class _Components(AbstractContextManager[MissionComponents]):
             strategy_name=strategy_label(self._choices.strategy, self._choices.strategy_arguments),
             planner_name=self._choices.planner,
             language=self._talk.lang,
+            names=tuple(self._talk.names.items()),
             language_model=self._talk.model_name,
             seed=self._world.seed,
         )
