@@ -158,6 +158,11 @@ def test_a_port_that_somebody_uses_is_told_by_its_name():
             MavsdkLink(parse_address(f"mavlink://udpin:127.0.0.1:{port}"))
 
 
+def test_a_serial_device_that_is_not_there_is_told_at_once():
+    with pytest.raises(DeviceError, match="nothing:57600 cannot be opened"):
+        MavsdkLink(parse_address("mavlink://serial:/dev/nothing:57600"))
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("flavour", FLAVOURS)
 def test_it_is_a_vehicle(flavour):

@@ -21,7 +21,7 @@ from mintpilot.core.inputs import (
     QuestionShown,
     Ticked,
 )
-from mintpilot.core.mission import Outcome, Verdict
+from mintpilot.core.mission import Outcome, Sight, Verdict
 from mintpilot.core.ports import Operator
 from mintpilot.core.query import Question
 from mintpilot.mission.components import MissionComponents
@@ -160,9 +160,12 @@ class Shell:
                 return believed
             failure = judge.final()
             missed = failure.outcome in (Outcome.PERSON_MISSED, Outcome.NOT_REACHED)
-            if believed.outcome is Outcome.PARTIAL and (missed or state.lacks_wanted):
+            unseen = any(look.result is Sight.UNSEEN for look in believed.looks)
+            if believed.outcome is Outcome.PARTIAL and (missed or unseen or state.lacks_wanted):
                 return believed  # the judge of people and things does not know of every place that was asked for
-        return replace(failure, achieved=believed.achieved, left=believed.left, waiting=believed.waiting)
+        return replace(
+            failure, achieved=believed.achieved, left=believed.left, looks=believed.looks, waiting=believed.waiting
+        )
 
     def close(self) -> None:
         """Leaves the vehicle holding, and ends the worker."""

@@ -108,6 +108,8 @@ def _stand_alone() -> None:
         os.setsid()
     with suppress(OSError):
         os.nice(-10)
+    with suppress(OSError, AttributeError):  # where that is allowed: whenever it wants a core, it gets one
+        os.sched_setscheduler(0, os.SCHED_RR, os.sched_param(1))
 
 
 class _LinkLoop:
@@ -133,6 +135,7 @@ class _LinkLoop:
                 self._step(answer)
             self._step(Tick(time_s=time.monotonic(), seen=self._seen()))
             self._link.keep_rates()
+            self._link.keep_beating()
             snapshot = Snapshot(time_s=time.monotonic(), seen=self._state.seen, phase=self._state.phase)
             self._channel.show(snapshot)
 

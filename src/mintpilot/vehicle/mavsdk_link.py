@@ -8,6 +8,7 @@ import queue
 import time
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
 from mintpilot.core.geometry import Vec3
@@ -18,6 +19,7 @@ from mintpilot.vehicle.signals import Act, Action, Did
 from mintpilot.vehicle.telemetry import Telemetry
 
 if TYPE_CHECKING:
+    from mavsdk.plugins.mavlink_direct import MavlinkMessage
     from mavsdk.plugins.offboard import Offboard
     from mavsdk.system import System
 
@@ -38,7 +40,11 @@ MESSAGES = (
     "EKF_STATUS_REPORT",
 )
 _SET_MODE, _SET_INTERVAL, _REQUEST, _GRIPPER = 176, 511, 512, 211
-_ORIGIN = 49
+_HEARTBEAT, _ORIGIN = 0, 49
+LATE_BEAT_S = 1.3
+"""A heartbeat that is so late is asked for, seconds ..."""
+BEAT_AGAIN_S = 0.4
+"""... and again after this time."""
 _CUSTOM_MODE = 1
 RATES_AGAIN_S = 5.0
 """Other ground stations set rates, too. So often, seconds, it is seen whether the position comes at less than half of
@@ -65,6 +71,7 @@ class MavsdkLink:
         self._workers = ThreadPoolExecutor(2, thread_name_prefix="mavlink-command")
         self._streams = False
         self._offboard: Offboard | None = None
+        self._beat_asked_s = clock()
         self._rates_s, self._counted, self._best_hz = clock(), 0, 0.0
         self._mavsdk, self._system = connected(address)
         self._system_id = int(self._system.get_system_id())
@@ -80,15 +87,17 @@ class MavsdkLink:
 
     def set_point(self, ned_m: Vec3, velocity_ned: Vec3, heading_rad: float) -> None:
         """Sends a set-point now. The library goes on sending it until the next one, or until `silence`."""
+        from mavsdk.exceptions import MavsdkError
         from mavsdk.plugins.offboard import PositionNedYaw, VelocityNedYaw
 
         heading = math.degrees(heading_rad)
         if self._offboard is None:
             self._offboard = self._open_offboard(self._system)
-        self._offboard.set_position_velocity_ned(
-            PositionNedYaw(*ned_m, heading),
-            VelocityNedYaw(*velocity_ned, heading),
-        )
+        with suppress(MavsdkError):
+            self._offboard.set_position_velocity_ned(
+                PositionNedYaw(*ned_m, heading),
+                VelocityNedYaw(*velocity_ned, heading),
+            )
         self._streams = True
 
     def act(self, order: Act) -> None:
@@ -112,6 +121,16 @@ class MavsdkLink:
     def request_origin(self) -> None:
         """Asks where its local origin lies on the earth: PX4 tells it once, long before we listen."""
         self._command(_REQUEST, _ORIGIN)
+
+    def keep_beating(self) -> None:
+        """Asks for a heartbeat that is late, which alone tells who flies; never waits. PX4 sends but one a second."""
+        from mavsdk.exceptions import MavsdkError
+
+        now_s = self._clock()
+        if now_s - max(self.telemetry.heartbeat_s + LATE_BEAT_S, self._beat_asked_s + BEAT_AGAIN_S) > 0:
+            self._beat_asked_s = now_s
+            with suppress(MavsdkError):  # a link that sends no more is told by what is not heard
+                self._direct.send_message(self._long(_REQUEST, _HEARTBEAT))
 
     def keep_rates(self) -> None:
         """Asks for the rates again where they have fallen; never waits."""
@@ -245,15 +264,19 @@ class MavsdkLink:
     def _command(self, command: int, *parameters: float) -> str:
         """Sends one command; why it was not done, or nothing."""
         from mavsdk.exceptions import MavsdkError
+
+        try:
+            answer = self._direct.send_command(self._long(command, *parameters))
+        except MavsdkError as error:
+            return str(error)
+        result = int(json.loads(answer.fields_json).get("result", 4))
+        return "" if result == 0 else _RESULTS.get(result, f"result {result}")
+
+    def _long(self, command: int, *parameters: float) -> MavlinkMessage:
         from mavsdk.plugins.mavlink_direct import MavlinkMessage
 
         values = {f"param{i}": 0.0 for i in range(1, 8)}
         values |= {f"param{i}": float(v) for i, v in enumerate(parameters, start=1)}
         target = {"target_system": self._system_id, "target_component": 1, "confirmation": 0}
         fields = json.dumps({**target, "command": command, **values})
-        try:
-            answer = self._direct.send_command(MavlinkMessage("COMMAND_LONG", 0, 0, self._system_id, 1, fields))
-        except MavsdkError as error:
-            return str(error)
-        result = int(json.loads(answer.fields_json).get("result", 4))
-        return "" if result == 0 else _RESULTS.get(result, f"result {result}")
+        return MavlinkMessage("COMMAND_LONG", 0, 0, self._system_id, 1, fields)

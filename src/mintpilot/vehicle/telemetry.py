@@ -54,6 +54,7 @@ class Telemetry:
         health: its readiness.
         autopilot: the firmware; None until its first heartbeat.
         positions: how often its local position came.
+        heartbeat_s: when its heartbeat came last.
     """
 
     def __init__(self) -> None:
@@ -65,7 +66,7 @@ class Telemetry:
         self._heading_rad = 0.0
         self._tilt_rad = (0.0, 0.0)
         self.positions = 0
-        self._message_s = self._heartbeat_s = self._position_s = self._global_s = -1e9
+        self._message_s = self.heartbeat_s = self._position_s = self._global_s = -1e9
         self._every_s = 1.0
         self._boot_ms = -1
         self._custom_mode = 0
@@ -132,7 +133,7 @@ class Telemetry:
         mode, name = mode_of(autopilot, self._custom_mode)
         return Seen(
             message_s=self._message_s,
-            heartbeat_s=self._heartbeat_s,
+            heartbeat_s=self.heartbeat_s,
             heartbeat_every_s=self._every_s,
             position_s=self._position_s,
             position_m=frame.from_ned(self.ned_m or (0.0, 0.0, 0.0)),
@@ -166,11 +167,11 @@ class Telemetry:
         firmware = AUTOPILOT_IDS.get(int(_number(fields, "autopilot", -1)))
         if firmware is None:
             return
-        if self.autopilot is not None and self._heartbeat_s > 0:
-            gap_s = time_s - self._heartbeat_s
+        if self.autopilot is not None and self.heartbeat_s > 0:
+            gap_s = time_s - self.heartbeat_s
             self._every_s += 0.3 * (min(gap_s, 1.5) - self._every_s)
         self.autopilot = firmware
-        self._heartbeat_s = time_s
+        self.heartbeat_s = time_s
         self._custom_mode = int(_number(fields, "custom_mode", self._custom_mode))
         self._armed = bool(int(_number(fields, "base_mode", 0)) & ARMED_FLAG)
 

@@ -30,14 +30,10 @@ class Hearer:
         speaker: whose rates are set.
         dialect: pymavlink's module of messages.
         send: sends a message.
-
-    Attributes:
-        set_points_s: when set-points came, seconds.
     """
 
     def __init__(self, autopilot: DoubleAutopilot, speaker: Speaker, dialect: Any, send: Send) -> None:
         self._autopilot, self._speaker, self._m, self._send = autopilot, speaker, dialect, send
-        self.set_points_s: list[float] = []
         self._items: dict[int, list[Any]] = {0: [], 1: [], 2: []}
         self._coming: tuple[int, int, list[Any]] | None = None
         self._answers: list[tuple[float, Any]] = []
@@ -76,7 +72,6 @@ class Hearer:
                 pass
 
     def _set_point(self, message: Any) -> None:
-        self.set_points_s.append(self._now_s)
         values = (message.x, message.y, message.z, message.vx, message.vy, message.vz, message.yaw)
         if message.coordinate_frame != LOCAL_NED or not all(math.isfinite(v) for v in values):
             return

@@ -6,6 +6,7 @@ import multiprocessing
 import select
 import signal
 import socket
+import struct
 import time
 from contextlib import suppress
 from dataclasses import dataclass, field
@@ -27,6 +28,12 @@ from mintpilot.simulation.scene import FlightRules, Scene
 STEP_S = 0.01
 READY_S = 60.0
 CLOSING_S = 3.0
+SO_TIMESTAMPNS = 35
+"""Linux: the kernel tells when each packet arrived."""
+STAMP = struct.Struct("@ll")
+ANCILLARY = socket.CMSG_SPACE(STAMP.size)
+SET_POINT = bytes([84, 0, 0])
+"""Id of SET_POSITION_TARGET_LOCAL_NED, where a MAVLink 2 packet has it."""
 GIMBAL = 154
 """Component id of its gimbal, which sends heartbeats of its own: they say nothing of the autopilot."""
 
@@ -60,7 +67,7 @@ class DoubleState:
     airborne: bool
     gripper: str
     set_points_s: tuple[float, ...]
-    """When set-points came."""
+    """When set-points arrived at its socket."""
     parameters: dict[str, float]
     fence_corners: int
     mission_commands: tuple[int, ...]
@@ -90,6 +97,9 @@ class DoubleLoop:
         self._gimbal, self._gimbal_s = self._m.MAVLink(None, srcSystem=1, srcComponent=GIMBAL), 0.0
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         self._socket.setblocking(False)
+        with suppress(OSError):
+            self._socket.setsockopt(socket.SOL_SOCKET, SO_TIMESTAMPNS, 1)
+        self._set_points_s: list[float] = []
         self._out, self._in = Wire(setup.seed), Wire(setup.seed + 1)
         self._begun_s = time.monotonic()
         self._place = Place(setup.scene, setup.rules) if setup.scene is not None else None
@@ -140,7 +150,7 @@ class DoubleLoop:
             armed=a.armed,
             airborne=a.airborne,
             gripper=a.gripper,
-            set_points_s=tuple(self._hearer.set_points_s),
+            set_points_s=tuple(self._set_points_s),
             parameters=dict(a.parameters.values),
             fence_corners=self._hearer.fence_corners,
             mission_commands=self._hearer.mission_commands,
@@ -158,9 +168,11 @@ class DoubleLoop:
     def _receive(self, now_s: float) -> None:
         while True:
             try:
-                packet = self._socket.recv(2048)
+                packet, told, _, _ = self._socket.recvmsg(2048, ANCILLARY)
             except OSError:  # nothing more, or nobody listens yet
                 break
+            if packet[7:10] == SET_POINT and Fault.SILENCE not in self.autopilot.faults:
+                self._set_points_s.append(now_s - _waited_s(told))
             self._in.put(packet, now_s, self.autopilot.faults)
         for packet in self._in.due(now_s):
             if Fault.SILENCE in self.autopilot.faults:
@@ -245,6 +257,15 @@ def _serve(pipe: Connection, setup: DoubleSetup) -> None:
         return
     finally:
         loop.close()
+
+
+def _waited_s(told: list[tuple[int, int, bytes]]) -> float:
+    """How long ago a packet arrived at the socket, as the kernel tells: this process may have been late to read it."""
+    for level, kind, data in told:
+        if level == socket.SOL_SOCKET and kind == SO_TIMESTAMPNS and len(data) == STAMP.size:
+            seconds, nanoseconds = STAMP.unpack(data)
+            return max(time.time() - float(seconds) - 1e-9 * float(nanoseconds), 0.0)
+    return 0.0
 
 
 def _dialect() -> Any:

@@ -73,6 +73,8 @@ class Speaker:
         maker = self._makers.get(number)
         if number in EARTHLY and not self._autopilot.knows_global:
             return None
+        if number == 0 and Fault.HEARTBEAT in self._autopilot.faults:
+            return None
         return maker(int(now_s * 1000)) if maker is not None else None
 
     def due(self, now_s: float) -> Iterator[Any]:
@@ -91,11 +93,10 @@ class Speaker:
             yield self._m.MAVLink_statustext_message(2, self._autopilot.texts.pop(0).encode()[:50])
 
     def _withheld(self, number: int) -> bool:
-        faults = self._autopilot.faults
         px4 = self._autopilot.flavour is Flavour.PX4
         blind = not self._autopilot.knows_position and number == 32 and not px4  # PX4 goes on guessing
         blind |= px4 and number == ORIGIN
-        return blind or (number == 0 and Fault.HEARTBEAT in faults)
+        return blind
 
     def _heartbeat(self, _: int) -> Any:
         m, a = self._m, self._autopilot
