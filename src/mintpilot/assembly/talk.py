@@ -15,10 +15,10 @@ from mintpilot.core.reading import AnsweredBy, Reading, guarded_replies
 from mintpilot.core.task import Task
 from mintpilot.core.tree import Mint
 from mintpilot.elicitation.wording import word_question
-from mintpilot.language.translating import ENGLISH, wording_for
-from mintpilot.language.wording import ModelWording, Wording
 from mintpilot.mission.rewording import Improve
 from mintpilot.mission_file.schema import LanguageSpec
+from mintpilot.wording.rewording import ModelWording, Wording
+from mintpilot.wording.translating import ENGLISH, wording_for
 
 TEMPLATE = "template"
 """Name of the model that is none."""
@@ -142,7 +142,7 @@ class ModelProposer(Proposer):
 
     def propose(self, mint: Mint) -> tuple[Query, ...]:
         """See `Proposer.propose`."""
-        from mintpilot.language.proposing import propose_cuts
+        from mintpilot.elicitation.proposing import propose_cuts
 
         return propose_cuts(self.model, mint).queries
 

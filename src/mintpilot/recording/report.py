@@ -15,7 +15,7 @@ from pydantic import JsonValue
 from mintpilot.core.mission import Outcome
 from mintpilot.core.query import Reply
 from mintpilot.recording.frames import FRAMES, FrameStore, crop_jpeg
-from mintpilot.recording.people import people_lines, people_seen
+from mintpilot.recording.people import look_line, people_lines, people_seen
 from mintpilot.recording.record import GapRecord, MissionRecord, QuestionRecord, SeenRecord
 from mintpilot.recording.tree_drawing import percent
 from mintpilot.recording.tree_svg import tree_svg
@@ -87,7 +87,7 @@ def report_html(record: MissionRecord, folder: Path) -> str:
         plot=_data_uri(plot.read_bytes(), "image/svg+xml") if plot.is_file() else "",
         tree=Markup(tree_svg(record.tree)) if record.tree else "",  # made here of escaped text
         pictures=pictures(record, folder),
-        people=people_lines(record),
+        people=[*people_lines(record), *map(look_line, record.looks)],
         slowest_s=max(record.timings_s.values(), default=0.0),
         settings=list(_flat(record.settings)),
     )

@@ -9,9 +9,9 @@ from rich.console import Console, Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
-from mintpilot.core.mission import Outcome
+from mintpilot.core.mission import Outcome, Sight
 from mintpilot.core.query import Reply
-from mintpilot.recording.people import people_lines
+from mintpilot.recording.people import look_line, people_lines
 from mintpilot.recording.record import GapRecord, MissionRecord, QuestionRecord
 from mintpilot.recording.report import consequence, number, reply_words, weightiest_first
 from mintpilot.recording.tree_drawing import tree_text
@@ -133,6 +133,7 @@ def _flown(record: MissionRecord) -> RenderableType:
     lines.extend(_plain(line) for line in people_lines(record))
     lines.extend(_plain(f"rule {_KEPT[rule.kept]}: {rule.text}", _RULE_STYLES[rule.kept]) for rule in record.rules)
     lines.extend(_plain(f"done after {number(one.at_s, 's')}: {one.text}") for one in record.achieved)
+    lines.extend(_plain(look_line(one), "yellow" if one.result is Sight.UNSEEN else "") for one in record.looks)
     lines.extend(_plain(f"left undone: {one.text} ({one.reason})", "yellow") for one in record.left)
     lines.extend(_plain(f"! {notice.text}", "yellow") for notice in record.notices)
     if record.run_dir:
