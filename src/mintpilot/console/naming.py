@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from mintpilot.language.tongues import TONGUES
+from mintpilot.wording.tongues import TONGUES
 from mintpilot.language.translating import noun_phrase
 
 
