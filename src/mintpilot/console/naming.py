@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from mintpilot.wording.tongues import TONGUES
-from mintpilot.language.translating import noun_phrase
+from mintpilot.wording.translating import noun_phrase
 
 
 def named(english: str, lang: str) -> str:
