@@ -36,11 +36,11 @@ with atheris.instrument_imports(include=[f"mintpilot.{room}" for room in READERS
     from mintpilot.core.query import Query, Question
     from mintpilot.frames.bags import RosBag
     from mintpilot.language.answer_model import read_with_model
-    from mintpilot.language.doubles import FunctionModel
     from mintpilot.language.instruction_model import parse_with_model
     from mintpilot.mapping.movingai import load_movingai
     from mintpilot.mapping.occupancy import load_ros_map
     from mintpilot.mission_file.reader import find_problems
+    from mintpilot.models.doubles import FunctionModel
     from mintpilot.recording.event_log import read_event_log
 
 TIMEOUT_S, MEMORY_MB, LONGEST = 5, 1024, 20_000

@@ -48,18 +48,21 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--llm", default="")
     parser.add_argument("--file", type=Path)
+    parser.add_argument("--data", type=Path, default=DATA, help="another list with references")
     parser.add_argument("--refused", action="store_true", help="print what was refused though it is within the verbs")
     options = parser.parse_args()
     if options.file:
         plain_list(options.file)
         return
-    found = score(read_rows(DATA), lambda text: parse_instruction(text, home_m=_HOME_M))
+    found = score(read_rows(options.data), lambda text: parse_instruction(text, home_m=_HOME_M))
     report("rules", found)
     if options.refused:
         print(*(f"  refused: {line}" for line in found.refused), sep="\n")
     if options.llm:
         model = load("language", options.llm)()
-        helped = score(read_rows(DATA), lambda text: parse_with_model(text, model, home_m=_HOME_M, timeout_s=60.0))
+        helped = score(
+            read_rows(options.data), lambda text: parse_with_model(text, model, home_m=_HOME_M, timeout_s=60.0)
+        )
         report(options.llm, helped)
 
 

@@ -13,7 +13,7 @@ from mintpilot.assembly.understanding import understand_instructions
 from mintpilot.assembly.validation import check_mission
 from mintpilot.core.events import Event, LegFlown
 from mintpilot.core.mission import Outcome
-from mintpilot.language.doubles import FunctionModel
+from mintpilot.models.doubles import FunctionModel
 
 MAP = "type octile\nheight 8\nwidth 12\nmap\n" + "\n".join(["@" * 12, *["@" + "." * 10 + "@"] * 6, "@" * 12]) + "\n"
 LAMP = {"id": "lamp-1", "label": "lamp", "position_m": [9.5, 4.0, 0.2]}

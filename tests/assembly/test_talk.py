@@ -20,8 +20,8 @@ from mintpilot.core.mission import Outcome
 from mintpilot.core.ports import Completion, LanguageModel
 from mintpilot.core.query import Order, Reply
 from mintpilot.core.reading import AnsweredBy
-from mintpilot.language.doubles import FunctionModel
 from mintpilot.mission_file.schema import LanguageSpec, MissionFile
+from mintpilot.models.doubles import FunctionModel
 
 
 class Clock:

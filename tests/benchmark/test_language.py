@@ -15,8 +15,8 @@ from mintpilot.cli.bench_language import bench_language
 from mintpilot.cli.exits import ExitCode
 from mintpilot.core.errors import InputError, MissingPartError
 from mintpilot.core.ports import LanguageModel
-from mintpilot.language.doubles import FunctionModel, NoModel
 from mintpilot.language.instruction import parse_instruction
+from mintpilot.models.doubles import FunctionModel, NoModel
 
 LIST = """within\tinstruction\treference
 yes\tPut the bowl in the microwave\tpick: bowl; deliver: bowl @ microwave

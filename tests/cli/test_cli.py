@@ -178,7 +178,7 @@ def test_run_writes_a_folder_and_prints_one_object(tmp_path, capsys):
     assert record["seed"] == 3
     assert record["run_dir"] == str(out)
     keys = {"outcome", "questions", "gaps", "flight", "timings_s", "seed", "run_dir", "schema_version"}
-    keys |= {"achieved", "left", "waiting", "reason", "people", "rules"}
+    keys |= {"achieved", "left", "looks", "waiting", "reason", "people", "rules"}
     assert set(record) == keys
     assert {"text", "gap", "gain_bits", "reply", "latency_s"} == set(record["questions"][0])
     assert (out / "record.json").exists()

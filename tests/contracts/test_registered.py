@@ -33,7 +33,7 @@ from mintpilot.core.errors import MissingPartError
 from mintpilot.core.ports import Completion, SourceOptions
 from mintpilot.interaction.scripted import ScriptedOperator
 from mintpilot.interaction.terminal import TerminalOperator
-from mintpilot.language.doubles import FunctionModel, ReplayModel
+from mintpilot.models.doubles import FunctionModel, ReplayModel
 from mintpilot.recording.in_memory import HistoryRecorder
 from mintpilot.recording.recorders import MemoryRecorder, NullRecorder, TeeRecorder
 from mintpilot.recording.run_folder import RunFolder

@@ -12,9 +12,9 @@ from mintpilot.core.mission import AskingSettings
 from mintpilot.core.ports import Ask
 from mintpilot.core.query import Reply
 from mintpilot.elicitation.wording import word_question
-from mintpilot.language.tongues import TONGUES
-from mintpilot.language.translating import consequence
 from mintpilot.strategies.mint import MintStrategy
+from mintpilot.wording.tongues import TONGUES
+from mintpilot.wording.translating import consequence
 from oracles.worlds import random_world
 
 EXACT = AskingSettings(delta_c_s=0.0, alpha=0.0, floor=0.0, goal_entropy_bits=0.0, max_questions=60)

@@ -12,7 +12,7 @@ from mintpilot.core.query import Question, Reply
 from mintpilot.core.reading import AnsweredBy, Reading, ReadingKind, guarded_replies
 from mintpilot.language.answer_model import read_with_model
 from mintpilot.language.answers import read_answer
-from mintpilot.language.doubles import FunctionModel, NoModel
+from mintpilot.models.doubles import FunctionModel, NoModel
 
 from . import questions
 

@@ -9,7 +9,7 @@ import pytest
 from mintpilot.core.errors import InputError
 from mintpilot.core.task import Action
 from mintpilot.language import Capabilities, parse_with_model
-from mintpilot.language.doubles import FunctionModel, NoModel
+from mintpilot.models.doubles import FunctionModel, NoModel
 
 GERMAN = "Flieg zum roten Fass, aber bleib 3 m vom Rauch weg"
 ENGLISH = "Somebody poor over at the red box could use the medicine, the injured person"

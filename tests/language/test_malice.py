@@ -21,9 +21,9 @@ from mintpilot.core.query import Answer, Question, Reply
 from mintpilot.core.semantic_map import SemanticMap
 from mintpilot.elicitation.wording import word_question
 from mintpilot.interaction.scripted import FunctionOperator, ScriptedOperator
-from mintpilot.language.doubles import FunctionModel
-from mintpilot.language.wording import ModelWording
 from mintpilot.mission.loop import fly_mission
+from mintpilot.models.doubles import FunctionModel
+from mintpilot.wording.rewording import ModelWording
 
 RNG = np.random.default_rng(0)
 

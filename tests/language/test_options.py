@@ -108,7 +108,7 @@ def test_what_was_read_back_is_confirmed_or_dropped(by: str, word: str) -> None:
 
 def test_no_language_model_has_a_say_in_a_choice() -> None:
     from mintpilot.language.answer_model import read_with_model
-    from mintpilot.language.doubles import NoModel
+    from mintpilot.models.doubles import NoModel
 
     class Eager(NoModel):
         def complete(self, *_: object, **__: object):

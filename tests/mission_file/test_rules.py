@@ -82,3 +82,23 @@ def test_an_automaton_of_32_states_is_taken(tmp_path):
 @pytest.mark.parametrize("subject", ["box", "boxes", "the boxes", "box-1", "people", "smoke", "smoke-1"])
 def test_what_a_distance_may_be_kept_from(tmp_path, subject):
     assert not problems(tmp_path, f"{{never: 'within({subject}, 0.5)'}}")[1]
+
+
+@pytest.mark.parametrize(
+    ("rule", "said"),
+    [
+        ("{never: touches(smoke)}", ""),
+        ("{never: touches(smoke-2)}", ""),
+        ("{never: touches(smok-2)}", "there is no region 'smok-2'; did you mean 'smoke-1'"),
+        ("{never: looked(bathroom)}", "there is no room 'bathroom'"),
+        ("{never: at(bx)}", "there is no goal with the id 'bx'"),
+    ],
+)
+def test_names_are_checked_as_far_as_they_go_before_the_drone_has_drawn_a_map(tmp_path, rule, said):
+    path = tmp_path / "m.yaml"
+    path.write_text(
+        "mintpilot: 1\nname: ruled\ninstruction: find the injured person\nworld: {scenario: fire-warehouse}\n"
+        f"rules: ['{rule}']\n".replace("['{", "[{").replace("}']", "}]")
+    )
+    found = [p.message for p in find_problems(path) if p.path.startswith("rules")]
+    assert (found == []) if not said else (len(found) == 1 and said in found[0]), found

@@ -66,7 +66,7 @@ def test_without_the_model_the_same_things_are_seen_and_it_is_said_once(server: 
 
 def test_a_slow_or_broken_server_costs_names_only(server: VisionServer) -> None:
     server.slow_s = 3.0
-    from mintpilot.language.endpoint import EndpointModel
+    from mintpilot.models.endpoint import EndpointModel
 
     model = EndpointModel(server.url, "eyes", environment={})
     perception = SegmentPerception(namers=[VisionNamer(model, timeout_s=0.2)])

@@ -37,6 +37,7 @@ KEYS = {
     "outcome",
     "reason",
     "achieved",
+    "looks",
     "left",
     "people",
     "rules",

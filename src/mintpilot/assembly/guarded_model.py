@@ -9,7 +9,7 @@ from contextlib import suppress
 
 from mintpilot.core.errors import DeviceError, MintPilotError
 from mintpilot.core.ports import Completion, LanguageModel
-from mintpilot.language.deadline import within
+from mintpilot.models.deadline import within
 
 MOST_FAILURES = 3
 """So often in a row, and it is left alone for `REST_S`: a model that hangs must not slow every step down."""

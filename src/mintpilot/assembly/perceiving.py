@@ -110,7 +110,7 @@ def vision_namer(wanted: Sequence[str] = (), environment: Mapping[str, str] = os
     model = next((environment[v] for v in MODEL_VARIABLES if environment.get(v)), "")
     if recorded and not url:
         return VisionNamer(RecordedVision(Path(recorded)), wanted=wanted)
-    from mintpilot.language.endpoint import EndpointModel
+    from mintpilot.models.endpoint import EndpointModel
 
     endpoint = EndpointModel(url, model, environment=environment)
     return VisionNamer(RecordedVision(Path(recorded), endpoint) if recorded else endpoint, wanted=wanted)

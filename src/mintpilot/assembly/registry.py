@@ -80,15 +80,16 @@ BUILT_IN: Final = MappingProxyType(
         ),
         "language": MappingProxyType(
             {
-                "template": "mintpilot.language.doubles:NoModel",
-                "endpoint": "mintpilot.language.endpoint:EndpointModel",
-                "embedded": "mintpilot.language.embedded:EmbeddedModel",
+                "template": "mintpilot.models.doubles:NoModel",
+                "endpoint": "mintpilot.models.endpoint:EndpointModel",
+                "embedded": "mintpilot.models.embedded:EmbeddedModel",
             }
         ),
         "speech": MappingProxyType(
             {
                 "double": "mintpilot.voice.doubles:SpeechDouble",
                 "espeak": "mintpilot.voice.gpl:EspeakSpeech",
+                "hibari": "mintpilot.voice.hibari:HibariSpeech",
                 "piper": "mintpilot.voice.gpl:PiperSpeech",
             }
         ),

@@ -8,7 +8,7 @@ from mintpilot.core.gap import ABSENT, BLOCKED, PASSABLE, PRESENT, Candidate, Ga
 from mintpilot.core.observation import Attribute
 from mintpilot.core.query import Literal, Query, Question, Saying, SayingKind
 from mintpilot.elicitation.wording import word_question
-from mintpilot.language.translating import ENGLISH, wording_for
+from mintpilot.wording.translating import ENGLISH, wording_for
 
 
 def sample_question(kind: GapKind, *, lang: str = ENGLISH, candidates: Sequence[Candidate] = ()) -> Question:

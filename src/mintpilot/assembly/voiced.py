@@ -19,12 +19,15 @@ from mintpilot.elicitation.candidates import gap_literals
 from mintpilot.uncertainty.findings import find_gaps
 from mintpilot.voice.hearing import Ear
 from mintpilot.voice.loopback import Conditions, LoopbackPerson, alike
+from mintpilot.voice.mouth import VoiceSettings
 from mintpilot.voice.operator import VoiceOperator, VoiceParts
 from mintpilot.voice.ports import Activity, Recogniser, SoundLink, Speech
 
 RECOGNISED = 0.6
 """A heard question is one of the world's where so much of the words is the same."""
 _READ_BACK = re.compile(r"understood\W+(yes|no)\b", re.IGNORECASE)
+_SAY = re.compile(r"say\W+confirm", re.IGNORECASE)
+"""A read-back again, without what was understood."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -52,17 +55,19 @@ class WorldKnowledge:
     def __init__(self, world: World, talk: Talk) -> None:
         self.answers = dict(_answers(world, talk))
         """Question → whether yes is true."""
-        self._last = ""
+        self._last = self._about = ""
 
     def __call__(self, heard: str) -> str | None:
         """What the person says; None: nothing, since it was no question."""
         read_back = _READ_BACK.search(heard)
         if read_back is not None:
-            return "confirm" if read_back.group(1).casefold() == self._last else "no"
+            self._about = read_back.group(1).casefold()
+        if read_back is not None or _SAY.search(heard):
+            return "confirm" if self._about and self._about == self._last else "no"
         best = max(self.answers, key=lambda text: alike(heard, text), default="")
         if alike(heard, best) < RECOGNISED:
             return "say again" if heard.rstrip().endswith("?") else None
-        self._last = "yes" if self.answers[best] else "no"
+        self._last, self._about = "yes" if self.answers[best] else "no", ""
         return self._last
 
 
@@ -115,17 +120,39 @@ def real_parts(link: SoundLink, *, lang: str = "en") -> VoiceParts:
         MissingPartError: one is not; the message says how to get it.
         InputError: a model file is not the pinned one.
     """
-    first, second = (load("recogniser", name)() for name in ("moonshine", "whisper"))
-    activity = load("activity", "silero")()
     return VoiceParts(
-        speech=load("speech", "piper" if lang == "en" else "espeak")(),
-        ear=Ear(first=first, second=second),
-        activity=activity,
+        speech=speech_for(lang),
+        ear=hears_here(),
+        activity=load("activity", "silero")(),
         link=link,
     )
 
 
-def voice_operator(link: SoundLink, talk: Talk, caption: Callable[[str], object]) -> VoiceOperator:
-    """A voice operator of a mission's language, made of the installed parts. Raises as `real_parts`."""
-    parts = real_parts(link, lang=talk.lang)
-    return VoiceOperator(parts, understand=talk.understand, order_of=talk.order_of, caption=caption, lang=talk.lang)
+def speech_for(lang: str) -> Speech:
+    """The installed voice of a language. Raises as `real_parts`."""
+    made: Speech = load("speech", "hibari" if lang == "en" else "espeak")()
+    return made
+
+
+def hears_here() -> Ear:
+    """Both installed recognisers. Raises as `real_parts`."""
+    first, second = (load("recogniser", name)() for name in ("moonshine", "whisper"))
+    return Ear(first=first, second=second)
+
+
+def voice_operator(
+    link: SoundLink, talk: Talk, show: Callable[[str], object], settings: VoiceSettings
+) -> VoiceOperator:
+    """A voice operator of a mission's language, made of the installed parts; ``show`` gets captions and what was heard.
+
+    Raises as `real_parts`.
+    """
+    return VoiceOperator(
+        real_parts(link, lang=talk.lang),
+        understand=talk.understand,
+        order_of=talk.order_of,
+        caption=lambda text: show(f"[spoken] {text}"),
+        heard=lambda text: show(f"[heard] {text}"),
+        lang=talk.lang,
+        settings=settings,
+    )

@@ -134,7 +134,8 @@ def _metres(text: str) -> str:
 
 def _content(text: str) -> frozenset[str]:
     words = re.findall(r"[a-z]+|\d+(?:\.\d+)?", text.lower())
-    plain = (f"{float(w):g}" if w[0].isdigit() else _ALIKE.get(singular(w), _ALIKE.get(w, singular(w))) for w in words)
+    told = [w for w in words if w not in _EMPTY]
+    plain = (f"{float(w):g}" if w[0].isdigit() else _ALIKE.get(singular(w), _ALIKE.get(w, singular(w))) for w in told)
     return frozenset(w for w in plain if w not in _EMPTY and w not in ("x", "y", "position"))
 
 

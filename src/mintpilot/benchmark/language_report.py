@@ -21,7 +21,7 @@ from mintpilot.benchmark.language_trials import (
 )
 from mintpilot.core.errors import MintPilotError
 from mintpilot.core.ports import LanguageModel
-from mintpilot.language.doubles import NoModel
+from mintpilot.models.doubles import NoModel
 
 RULES = "template"
 """The way without a model."""

@@ -28,7 +28,7 @@ from mintpilot.core.reading import Reading, ReadingKind, guarded_replies, reply_
 from mintpilot.elicitation.wording import word_question
 from mintpilot.language.answer_model import read_with_model
 from mintpilot.language.instruction_model import parse_with_model
-from mintpilot.language.wording import ModelWording
+from mintpilot.wording.rewording import ModelWording
 
 PATIENT_S = 60.0
 """Quality is measured without hurry; speed apart from it, seconds."""

@@ -19,7 +19,7 @@ from urllib.parse import urlsplit
 from mintpilot.cli.exits import ExitCode
 from mintpilot.core.compiled import NOT_KEPT, can_keep
 from mintpilot.core.errors import MintPilotError
-from mintpilot.language.gguf import NAME, PARTS, PATH_VARIABLE, part_files
+from mintpilot.models.gguf import NAME, PARTS, PATH_VARIABLE, part_files
 from mintpilot.simulation.engine import GL_PACKAGES
 
 _DRAW = """
@@ -157,7 +157,7 @@ def _look_at_red(url: str, model: str) -> str:
     from PIL import Image
     from pydantic import BaseModel
 
-    from mintpilot.language.endpoint import EndpointModel
+    from mintpilot.models.endpoint import EndpointModel
 
     class Colour(BaseModel):
         colour: str

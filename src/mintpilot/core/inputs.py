@@ -13,6 +13,7 @@ from typing import TypeAlias
 from mintpilot.core.decisions import Decision
 from mintpilot.core.motion import MotionEnd
 from mintpilot.core.query import Answer, Order
+from mintpilot.core.room_view import RoomView
 from mintpilot.core.semantic_map import SemanticMap
 from mintpilot.core.told import Fact
 from mintpilot.core.trajectory import FlightLog, VehicleState
@@ -76,6 +77,8 @@ class MotionEnded:
     """For refusals and failures: why."""
     by_hand: str = ""
     """For acts: what a person must do now, because the vehicle cannot; empty: nothing."""
+    view: RoomView | None = None
+    """For looks into a room: what the vehicle itself says of it; None: the map tells."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -117,7 +117,8 @@ class AskingSettings:
     )
     failure_price_s: float = setting(
         600.0,
-        "What a failed mission counts for, in seconds of flight, where expected losses are weighed.",
+        "What a failed mission counts for, in seconds of flight, where expected losses are weighed. Unset: 600, or ten "
+        "flights across the map where that is longer.",
         least=0,
     )
     max_questions: int | None = setting(
@@ -304,6 +305,34 @@ def left_of(undone: LeftUndone) -> Left:
     )
 
 
+class Sight(StrEnum):
+    """What a look into a room came to."""
+
+    FOUND = "found"
+    EMPTY = "empty"
+    """Seen, and nothing of what was asked for is there."""
+    UNSEEN = "could-not-see"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Looked:
+    """The result of a look into a room."""
+
+    n: int
+    """Number of its step."""
+    text: str
+    """The step, as a short sentence without a full stop."""
+    result: Sight
+    what: str = ""
+    """The class of what was asked for; empty: whatever is there."""
+    count: int = 0
+    """How many of it were found."""
+    objects: tuple[str, ...] = ()
+    """Ids of those of them that are on the map."""
+    seen_share: float = 0.0
+    """Share of the doorway through which the room was seen, 0 to 1."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Waiting:
     """What waiting for answers took."""
@@ -325,6 +354,8 @@ class Verdict:
     """What was done, in order."""
     left: tuple[Left, ...] = ()
     """What was to be done and was not."""
+    looks: tuple[Looked, ...] = ()
+    """What looks into rooms came to, in order."""
     waiting: Waiting = Waiting()
     rules_broken: tuple[str, ...] | None = None
     """Words of the rules that the flight broke; empty: it kept all; None: nobody judged that."""

@@ -9,7 +9,7 @@ from mintpilot.core.gap import GapKind, KnowledgeGap
 from mintpilot.core.query import YES_PART, Literal, Question, Saying, SayingKind
 from mintpilot.language.answer_text import folded, listed, spoken, utterance, without_courtesies
 from mintpilot.language.answer_words import ANSWER_WORDS
-from mintpilot.language.tongues import TONGUES
+from mintpilot.wording.tongues import TONGUES
 
 Evidence = tuple[tuple[Literal, bool], ...]
 _SIDES = ("left", "right")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection
 from dataclasses import replace
+from typing import Literal
 
 from mintpilot.core.errors import MintPilotError
 from mintpilot.core.ports import LanguageModel
@@ -11,7 +12,7 @@ from mintpilot.core.query import Question, Reply
 from mintpilot.core.reading import AnsweredBy, Reading, ReadingKind, opposite
 from mintpilot.language.answer_text import LONGEST, vetoes
 from mintpilot.language.answers import read_answer
-from mintpilot.language.forms import AnswerReading, read_form
+from mintpilot.models.forms import StrictForm, read_form
 
 READING_S = 2.0
 """Seconds that a model may take for one reading; it is asked twice."""
@@ -24,6 +25,12 @@ _SHOTS = (
 )
 _TASK = "An operator replied to a drone's question. What does the reply mean: yes, no, unsure or other?"
 _TURNED = _TASK.replace("does the reply mean", "is the opposite of the reply")
+
+
+class AnswerReading(StrictForm):
+    """What a model takes an answer for. Orders are not among it: those must be heard by the rules."""
+
+    reading: Literal["yes", "no", "unsure", "other"]
 
 
 def read_with_model(

@@ -26,6 +26,8 @@ class Reading:
     home_m: Vec3 | None
     subgoals: list[SubGoal] = field(default_factory=list)
     seeks_people: bool = False
+    sought_at: int | None = None
+    """Number of steps that stood before the last search for people."""
     avoid: list[Avoidance] = field(default_factory=list)
     keep_away: list[KeepAway] = field(default_factory=list)
     slowly: bool = False
@@ -35,6 +37,8 @@ class Reading:
     took_off: bool = False
     named: list[Reference] = field(default_factory=list)
     """Everything that was spoken of, oldest first: what pronouns look back to."""
+    clause_at: int = 0
+    """Where the clause begins that is read."""
     told: Reference | None = None
     """What a sentence only said to be there, until a pronoun takes it up."""
 
@@ -76,7 +80,7 @@ class Reading:
         while True:
             at = self.words.at
             joint = self.words.take(",", ", and", "and")
-            more = self._listed_next() if joint else None
+            more = self._listed_next(last) if joint else None
             if more is None:
                 self.words.at = at
                 return
@@ -86,11 +90,11 @@ class Reading:
             last = more
             yield more
 
-    def _listed_next(self) -> Reference | None:
+    def _listed_next(self, last: Reference) -> Reference | None:
         with suppress(Unread):
             if self.words.next() in ("it", "them", "him", "her", "there", "to"):
                 return None
-            more = noun_phrase(self.words, before=self.named[-1] if self.named else None)
+            more = noun_phrase(self.words, before=last)
             if self.words.next() not in ("is", "are", "needs", "need", "was", "has", "must", "should"):
                 return more
         return None
@@ -132,7 +136,19 @@ class Reading:
         return False
 
 
-_STATE = ("took_off", "listed", "subgoals", "seeks_people", "avoid", "keep_away", "slowly", "carried", "named", "told")
+_STATE = (
+    "took_off",
+    "listed",
+    "subgoals",
+    "seeks_people",
+    "sought_at",
+    "avoid",
+    "keep_away",
+    "slowly",
+    "carried",
+    "named",
+    "told",
+)
 
 
 def is_person(reference: Reference) -> bool:

@@ -14,9 +14,8 @@ from mintpilot.core.geometry import Vec3
 from mintpilot.core.task import Action, SubGoal, Task
 from mintpilot.language import lexicon, verbs
 from mintpilot.language.clauses import HURT_PEOPLE, Reading, is_person
-from mintpilot.language.keeping_out import keeps_out
 from mintpilot.language.phrases import InstructionError, Words, refuse, words_of
-from mintpilot.language.rules import read_clause
+from mintpilot.language.rules import keeps_out, read_clause
 
 _LONGEST = 600
 _MARKS = (".", ";", "!", "?", ":")
@@ -69,7 +68,7 @@ def parse_instruction(
 def _read_sentence(reading: Reading) -> None:
     """Clauses up to the end of a sentence."""
     words = reading.words
-    begun = words.at
+    begun, words.open = words.at, True
     if words.take("before you", "before"):
         _swapped(reading, begun)
     elif words.take("after"):
@@ -169,6 +168,9 @@ def _task(text: str, reading: Reading, capabilities: Capabilities) -> Task:
         raise InstructionError(
             f"'{reading.told.phrase}' is said to be there, but no step takes it up: say what is to be done with it"
         )
+    if reading.sought_at is not None and reading.sought_at < len(reading.subgoals):
+        later = reading.subgoals[reading.sought_at].reference.phrase
+        refuse(later, "would be done before or after the search for people, whichever is shorter: say the search last")
     if reading.seeks_people and not any(is_person(g.reference) for g in reading.subgoals):
         reading.add(Action.GO, HURT_PEOPLE)
     if not reading.subgoals and reading.took_off:

@@ -7,16 +7,19 @@ from __future__ import annotations
 
 from collections.abc import Collection
 from dataclasses import replace
+from typing import Literal
+
+from pydantic import Field
 
 from mintpilot.core.errors import InputError, MintPilotError
 from mintpilot.core.geometry import Vec3
 from mintpilot.core.ports import LanguageModel
 from mintpilot.core.task import Task
 from mintpilot.language import lexicon, verbs
-from mintpilot.language.forms import Steps, TypedStep, read_form
 from mintpilot.language.instruction import Capabilities, parse_instruction
 from mintpilot.language.lexicon import singular, word_set
 from mintpilot.language.phrases import words_of
+from mintpilot.models.forms import StrictForm, read_form
 
 INSTRUCTION_S = 20.0
 _LONGEST = 300
@@ -44,6 +47,28 @@ _FOREIGN_LEFT_TO_RULES = word_set(
     ningún ninguna antes después otra"""
 )
 """Negations, exceptions, choices and conditions of other languages: a model that drops one turns the meaning round."""
+
+
+class TypedStep(StrictForm):
+    """One step of an instruction. What each field holds depends on the action; `Steps` says how."""
+
+    action: Literal["go", "pick", "deliver", "look", "count", "photograph", "report", "seek"]
+    target: str = Field(default="", max_length=100)
+    place: str = Field(default="", max_length=100)
+
+
+class Distance(StrictForm):
+    """What is to be stayed away from."""
+
+    what: str = Field(min_length=1, max_length=100)
+    metres: float = Field(default=0.0, ge=0, le=100)
+
+
+class Steps(StrictForm):
+    """An instruction as typed steps. ``target`` is the thing, ``place`` the room, the container or the receiver."""
+
+    steps: list[TypedStep] = Field(min_length=1, max_length=12)
+    keep_out: list[Distance] = Field(default=[], max_length=6)
 
 
 def parse_with_model(

@@ -164,6 +164,7 @@ _REASONS = {
     "conditions are not understood": "if unless until till when whenever while otherwise as because whether once",
     "exceptions are not understood": "except only but apart besides instead rather excluding other than just",
     "it names a choice: say which one is meant": "or either neither nor whichever any",
+    "it points at something that was not said here": "same previous former latter remaining wrong correct",
     "negations are only understood for what is to be stayed out of": (
         "not no never none nothing without nobody don't doesn't isn't aren't won't can't cannot didn't wasn't "
         "shouldn't mustn't ain't"

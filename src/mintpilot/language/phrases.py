@@ -306,7 +306,7 @@ def _position(words: Words) -> Vec3 | None:
         comma = words.at
         if not words.take(", and", ",", "and") or not (words.next() in "xyz(-" or _NUMBER.fullmatch(words.next())):
             words.at = comma
-            if words.next() not in ("y", "z"):
+            if words.next() not in ("y", "z") and not _NUMBER.fullmatch(words.next()):
                 break
     if len(values) < 2 or (bracket and not words.take(")")):
         words.at = start

@@ -1,34 +1,80 @@
-"""The rules for clauses, in the order in which they are tried. What no rule takes refuses the instruction."""
+"""The clauses of an instruction: pattern and what it does. What none of them fits refuses the instruction."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 
-from mintpilot.language.asking import count, photograph, report, seek, somebody_in, told
-from mintpilot.language.carrying import bring, bring_somebody, drop, needed, pick
+from mintpilot.language import steps
 from mintpilot.language.clauses import Reading
-from mintpilot.language.going import (
-    find,
-    go,
-    go_on_home,
-    home,
-    look_behind,
-    look_into,
-    same,
-    search_venue,
-    take_off,
-    visit,
-    wait,
+from mintpilot.language.grammar import Found, matched
+from mintpilot.language.slots import SLOTS
+
+_Rule = tuple[str, Callable[[Reading, Found], None]]
+_DOES: tuple[_Rule, ...] = (
+    ("LAUNCH [<height>]", steps.take_off),
+    ("[SLOWLY] (rtl [to home] | return HOME | GO [straight | directly] HOME) [SLOWLY]", steps.home),
+    ("(photograph | PICTURE of) <things> {HOW}", steps.photograph),
+    ("PICTURE [there]", steps.photograph),
+    ("(LOOKS | TELL SEEN) [<room> | AROUND <thing>] [there]", steps.report),
+    ("(count [how many] | HOW_MANY) <thing> [ARE] {PLACE}", steps.count),
+    ("HOLD [there | here] OVER <thing> [for <duration>]", steps.wait),
+    ("hover [there | here] [<height>] [[for] <duration>]", steps.wait),
+    ("HOLD [there | here] [for] <duration>", steps.wait),
+    (
+        "(CHECK (if | whether | for) SOMEBODY [is | are] | (is | are) [there] SOMEBODY) [STATES] <room>",
+        steps.somebody_in,
+    ),
+    ("ENSURE NOBODY (is | are) [STATES] <room>", steps.somebody_in),
+    ("FIND EVERYBODY HELP [HERE] [<venue>]", steps.seek),
+    ("EVERYBODY HELP [HERE] [<venue>]", steps.seek_too),
+    ("ENSURE NOBODY [HELP | (is | are) (STATES | missing)] [HERE] [<venue>]", steps.seek),
+    ("CHECK (if | whether | for) SOMEBODY [HELP | (is | are) STATES] [HERE] [<venue>]", steps.seek),
+    ("SCAN <hall> for <things>", steps.find),
+    ("LOOK_INTO <rooms> [for <thing>]", steps.look),
+    ("(look | check | have a look | search) <room>", steps.look),
+    ("FIND <things> [<room>]", steps.find),
+    ("[SLOWLY] [<height>] [,] GO [SLOWLY] [ADVERBS] [ADVERBS] [SLOWLY] TO <things> {HOW}", steps.go),
+    ("(to | back to) <things> {HOW}", steps.go_too),
+    ("RISE <height> [SLOWLY]", steps.rise),
+    ("[SLOWLY] VISIT <things> {HOW}", steps.visit),
+    ("BRING <thing> [<source>] <goal>", steps.bring),
+    ("BRING <who> <thing> [<source>]", steps.bring),
+    ("DROP <bare> [down | off] (there | AT <place>)", steps.drop),
+    ("PICK <thing> [up] [<source>]", steps.pick),
+    ("<named> (needs | need) <thing> [<source>]", steps.needed),
+    ("HOME", steps.home_too),
+    ("[SLOWLY] return [SLOWLY]", steps.home),
+    ("THERE_IS <named> [STATES] [BY <bare>] [<venue>]", steps.told),
+    ("<named> is STATES [BY <bare>] [<venue>]", steps.told),
+    ("[into | in] <things> {HOW}", steps.same),
+)
+"""The first that fits decides; a longer reading stands before a shorter one."""
+_KEEPS_OUT: tuple[_Rule, ...] = (
+    (
+        "[WISH [,]] (AVOID | without ENTERING | NEVER ENTER | STAY [<distance>] OUT_OF) <outs> [[,] WISH]",
+        steps.keep_out,
+    ),
+    ("[WISH [,]] STAY <distance> from <outs> [[,] WISH]", steps.keep_out),
+    ("<named> OFF_LIMITS", steps.keep_out),
 )
 
 
 def read_clause(reading: Reading) -> bool:
     """Takes one clause; False, and nothing taken, where no rule fits. Raises `InputError` for what is impossible."""
-    return any(reading.attempt(rule) for rule in _RULES)
+    return _first(reading, _DOES)
 
 
-_RULES: tuple[Callable[[Reading], None], ...] = (
-    take_off, home, photograph, report, count, wait, somebody_in, seek, search_venue, look_into, look_behind,
-    find, go, visit, bring, bring_somebody, drop, pick, needed, go_on_home, same, told,
-)  # fmt: skip
-"""The first that fits the words at the cursor decides; a longer reading stands before a shorter one."""
+def keeps_out(reading: Reading) -> bool:
+    """Takes one clause that says what is to be stayed out of; False where there is none."""
+    return _first(reading, _KEEPS_OUT)
+
+
+def _first(reading: Reading, rules: tuple[_Rule, ...]) -> bool:
+    reading.clause_at = reading.words.at
+    return any(reading.attempt(partial(_apply, rule=rule)) for rule in rules)
+
+
+def _apply(reading: Reading, rule: _Rule) -> None:
+    pattern, does = rule
+    does(reading, matched(pattern, reading, SLOTS))

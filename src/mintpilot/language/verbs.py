@@ -62,7 +62,27 @@ ENTERING = _phrases(
     flying near | getting near | coming near"""
 )
 METRES = _phrases("""m | metre | metres | meter | meters""")
-ADVERBS = (*_phrases("straight | directly | over | up | back | on | out"), *SLOWLY)
+ADVERBS = _phrases("straight | directly | over | up | back | on | out")
+LAUNCH = _phrases("take off | launch | lift off")
+RISE = tuple(f"{verb} {up}" for verb in ("go", "fly", "move", "climb", "rise") for up in ("up", "down")) + _phrases(
+    "ascend | climb | rise | descend"
+)
+LOOKS = _phrases("what do you see | what can you see | what is there")
+TELL = _phrases("report | tell me | describe | say | tell us | and report")
+AROUND = _phrases("at | near | by | next to | around")
+HOW_MANY = _phrases("how many | tell me how many | report how many")
+ARE = _phrases("are there | there are | do you see | can you see | you see | are")
+HOLD = _phrases("wait | hover | stay | hold | remain | hold position")
+OVER = _phrases("at | over | above | near | next to | by")
+HERE = _phrases("here | inside | in here")
+SCAN = _phrases("search | scan | look through | explore | sweep")
+THERE_IS = _phrases("there is | there's")
+BY = _phrases("behind | near | next to | at | by")
+AVOID = _phrases("avoid | avoiding | bypass | skip | skipping")
+NEVER = _phrases("do not | don't | never")
+STAY = _phrases("stay | staying | keep | keeping | steer | steering | remain")
+OUT_OF = _phrases("out of | away from | clear of | outside of | outside | off")
+OFF_LIMITS = _phrases("is off limits | are off limits | is forbidden | are forbidden | must be avoided")
 SOMEBODY = tuple(
     f"{there}{who}{other}"
     for there in ("", "there is ", "there's ", "there are ")
@@ -71,8 +91,9 @@ SOMEBODY = tuple(
 )
 EVERYBODY = (*SOMEBODY, "everyone", "everybody", "everyone else", "everybody else")
 PICTURE = tuple(
-    f"{verb} {one}{picture}"
+    f"{verb} {me}{one}{picture}"
     for verb in ("take", "make", "get", "snap", "shoot")
+    for me in ("", "me ", "us ")
     for one in ("a ", "", "some ")
     for picture in _phrases("picture | photo | photograph | image | snapshot | pictures | photos | photographs")
 )

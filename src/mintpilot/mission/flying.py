@@ -8,12 +8,13 @@ import numpy as np
 
 from mintpilot.core.decisions import FlyPlan, FlyTrajectory, GoBack, RefuseFlight
 from mintpilot.core.inputs import Link, MapObserved
-from mintpilot.core.mission import Achieved, Outcome, ReturnRule
+from mintpilot.core.mission import Achieved, Outcome, ReturnRule, Sight
 from mintpilot.core.plan import LeftUndone, Leg, Plan, Stop
 from mintpilot.core.task import Action
 from mintpilot.mission.outlasting import outlasted
 from mintpilot.mission.requests import Purpose
 from mintpilot.mission.rule_progress import done
+from mintpilot.mission.sights import looked
 from mintpilot.mission.state import Activity, Ending, Goal, uncertain_things
 from mintpilot.mission.surveying import SWEEP_RAD, turn
 from mintpilot.mission.transition import Transition, partial_reason
@@ -59,7 +60,7 @@ def _done(t: Transition) -> Ending:
     left, achieved = t.left(), t.state.achieved
     if not left:
         return Ending(outcome=Outcome.SUCCESS, reason="Every stop was reached.")
-    outcome = Outcome.PARTIAL if achieved else Outcome.NO_SAFE_PLAN
+    outcome = Outcome.PARTIAL if achieved or t.state.looks else Outcome.NO_SAFE_PLAN
     return Ending(outcome=outcome, reason=partial_reason(achieved, left))
 
 
@@ -146,11 +147,18 @@ def mark_done(t: Transition, stop: Stop) -> None:
         progress = done(task, t.beliefs.progress, t.beliefs.map, setup.mission.limits, stop, here)
         t.set(beliefs=replace(t.beliefs, progress=progress))
     begun_s = t.state.clock_s if t.state.task_begun_s is None else t.state.task_begun_s
+    t.set(beliefs=replace(t.beliefs, finished=t.beliefs.finished | {stop.id}))
+    if (
+        task is not None
+        and stop.action is Action.LOOK
+        and any(r.id == stop.sites[0].label for r in t.beliefs.map.rooms)
+    ):
+        look = looked(stop, task, t.beliefs.map, t.state.view)
+        t.set(looks=(*t.state.looks, look))
+        if look.result is Sight.UNSEEN:
+            return
     achieved = Achieved(n=stop.step, text=stop.text or stop.id, at_s=t.state.clock_s - begun_s)
-    t.set(
-        beliefs=replace(t.beliefs, finished=t.beliefs.finished | {stop.id}),
-        achieved=(*t.state.achieved, achieved),
-    )
+    t.set(achieved=(*t.state.achieved, achieved))
 
 
 def done_by_hand(t: Transition) -> None:

@@ -158,9 +158,10 @@ def _proceed_without_map(t: Transition) -> None:
 def _tick(t: Transition, event: Ticked) -> None:
     if event.vehicle is not None:
         t.set(vehicle=event.vehicle, ready=t.state.task_begun_s is not None)
-    question, request = t.state.question, t.state.request
+    question = t.state.question
     if question is not None and t.state.clock_s >= question.deadline_s:
         clearing.unanswered(t) if t.state.grounded else asking.unanswered(t)
+    request = t.state.request  # what was worked out for that question has ended with it
     if request is not None and t.state.clock_s >= request.deadline_s:
         _without_decision(t, request, "the deliberation is overdue")
     if t.state.beliefs is not None:
@@ -230,6 +231,7 @@ def _motion_ended(t: Transition, event: MotionEnded) -> None:
         t.finish(Outcome.VEHICLE_FAILED, event.reason or "The vehicle could not go on.")
         return
     stopped = event.end is not MotionEnd.ARRIVED
+    t.set(view=event.view)
     match activity:
         case Activity.SWEEP if t.state.goal is Goal.SURVEY and not stopped:
             t.observe(Activity.SWEPT, look=False)

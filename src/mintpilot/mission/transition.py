@@ -10,7 +10,7 @@ import numpy as np
 
 from mintpilot.core.geometry import Floats
 from mintpilot.core.inputs import Link
-from mintpilot.core.mission import Achieved, Left, Outcome, Verdict, left_of
+from mintpilot.core.mission import Achieved, Left, Outcome, Sight, Verdict, left_of
 from mintpilot.core.motion import FollowTrajectory, Land, PerformAction, TakeOff
 from mintpilot.core.plan import Leg, Stop
 from mintpilot.core.trajectory import Trajectory
@@ -27,6 +27,7 @@ from mintpilot.mission.directives import (
     WithdrawQuestion,
 )
 from mintpilot.mission.requests import Purpose, Request
+from mintpilot.mission.sights import unknown
 from mintpilot.mission.state import (
     Activity,
     Ending,
@@ -183,7 +184,8 @@ class Transition:
         undone = state.undone if state.plan is None else state.plan.leaves_undone
         why = {one.stop.id: left_of(one) for one in undone}
         ended = "the mission ended before it"
-        return tuple(
+        unseen = tuple(unknown(look) for look in state.looks if look.result is Sight.UNSEEN)
+        return unseen + tuple(
             why.get(stop.id) or Left(n=stop.step, text=stop.text or stop.id, reason=ended, resource="ended")
             for stop in state.wanted
             if stop.id not in finished
@@ -197,6 +199,7 @@ class Transition:
             reason=reason,
             achieved=self.state.achieved,
             left=self.left(),
+            looks=self.state.looks,
             waiting=self.state.waiting,
         )
         self.set(goal=Goal.ENDED, request=None, verdict=verdict)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator
 
 from mintpilot.core.errors import MintPilotError
@@ -9,7 +10,7 @@ from mintpilot.core.observation import RegionKind
 from mintpilot.core.rule import About, Rule
 from mintpilot.mission_file.form_checks import nearest
 from mintpilot.mission_file.schema import MissionFile, RuleSpec
-from mintpilot.mission_file.schema_world import MapWorld
+from mintpilot.mission_file.schema_world import MapWorld, SceneWorld
 from mintpilot.mission_file.yaml_places import Fault, Path_
 from mintpilot.rules import patterns
 from mintpilot.rules.formula import propositions_of
@@ -17,6 +18,8 @@ from mintpilot.rules.parsing import parse, proposition
 from mintpilot.rules.satisfying import conflicting, is_trivial
 from mintpilot.uncertainty.ruling import labels_of
 
+_DRAWN = re.compile(rf"(?:{'|'.join(RegionKind)}|room)-[1-9]\d*")
+"""Ids that a drone gives to what it draws into its own map; which there will be is not known before."""
 _PATTERNS: dict[frozenset[str], Callable[[RuleSpec], Rule]] = {
     frozenset({"never"}): lambda s: patterns.never(proposition(s.never or "")),
     frozenset({"always"}): lambda s: patterns.always_(proposition(s.always or "")),
@@ -77,8 +80,8 @@ def _name_faults(file: MissionFile, rule: Rule, path: Path_) -> Iterator[Fault]:
     goals = [goal.id for goal in file.goals or () if goal.id is not None]
     kinds = [str(kind) for kind in RegionKind]
     on_map = isinstance(file.world, MapWorld)
-    regions = [r.id for r in file.world.regions] + kinds if isinstance(file.world, MapWorld) else []
-    rooms = [r.id for r in file.world.rooms] if isinstance(file.world, MapWorld) else []
+    regions, rooms = _places(file)
+    regions += kinds
     for what in sorted(propositions_of(parse(rule.formula))):
         noun, known = "region", regions
         match what.about:
@@ -94,8 +97,23 @@ def _name_faults(file: MissionFile, rule: Rule, path: Path_) -> Iterator[Fault]:
                 noun, known = "thing", _things(file)
             case _:
                 pass
-        if what.subject not in known and (on_map or what.about in (About.AT, About.DID)):
+        if not on_map and what.about not in (About.AT, About.DID):
+            if what.about in (About.WITHIN, About.CARRYING) or _DRAWN.fullmatch(what.subject):
+                continue  # told only by the map that the drone will draw
+            known = [*known, *(f"{kind}-1" for kind in (kinds if noun == "region" else ["room"]))]
+        if what.subject not in known:
             yield _fault(path, f"{what}: there is no {noun} '{what.subject}'; {nearest(what.subject, known)}")
+
+
+def _places(file: MissionFile) -> tuple[list[str], list[str]]:
+    """Ids of the regions and of the rooms that the file itself names."""
+    match file.world:
+        case MapWorld():
+            return [r.id for r in file.world.regions], [r.id for r in file.world.rooms]
+        case SceneWorld():
+            return [s.id for s in file.world.scene.smokes], [r.id for r in file.world.scene.rooms]
+        case _:
+            return [], []
 
 
 def _things(file: MissionFile) -> list[str]:

@@ -2,10 +2,16 @@
 
 from __future__ import annotations
 
+import ast
+import inspect
+import textwrap
 from collections.abc import Mapping
-from typing import Annotated, Any, TypeAlias, TypeVar
+from itertools import pairwise
+from typing import Annotated, Any, Literal, TypeAlias, TypeVar
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSchema
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, GetJsonSchemaHandler, WithJsonSchema
+from pydantic.json_schema import JsonSchemaValue
+from pydantic_core import CoreSchema
 
 from mintpilot.core.geometry import Box, Vec3
 from mintpilot.core.observation import Attribute
@@ -19,10 +25,30 @@ class Spec(BaseModel):
         strict=True,
         frozen=True,
         allow_inf_nan=False,
-        use_attribute_docstrings=True,
         title=None,
         defer_build=True,
     )
+
+    @classmethod
+    def __get_pydantic_json_schema__(cls, core_schema: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
+        """What is written below a field describes it: read from the source only where a schema is wanted."""
+        schema = handler(core_schema)
+        fields = handler.resolve_ref_schema(schema).get("properties", {})
+        for name, words in _described(cls).items():
+            fields[cls.model_fields[name].alias or name].setdefault("description", words)
+        return schema
+
+
+def _described(model: type[Spec]) -> dict[str, str]:
+    """The sentences below a model's own and inherited fields."""
+    found: dict[str, str] = {}
+    for one in reversed([kind for kind in model.__mro__ if issubclass(kind, Spec) and kind.__doc__]):
+        tree = ast.parse(textwrap.dedent(inspect.getsource(one)))
+        for field, words in pairwise(ast.walk(tree)):
+            match field, words:
+                case ast.AnnAssign(target=ast.Name(id=name)), ast.Expr(value=ast.Constant(value=str(text))):
+                    found[name] = inspect.cleandoc(text)
+    return found
 
 
 def _as_tuple(value: Any) -> Any:
@@ -54,6 +80,10 @@ PartName: TypeAlias = Annotated[
 ThinkWords: TypeAlias = Annotated[str, Field(pattern=r"^\d+(\.\d+)?(\.\.\d+(\.\d+)?)?$")]
 """``5``, or ``2..8``: a time, or two bounds between which it is drawn evenly, seconds."""
 Words: TypeAlias = Annotated[str, Field(min_length=1, max_length=1000)]
+Spoken: TypeAlias = Literal["en", "de", "fr", "es"]
+Described: TypeAlias = Words | Annotated[dict[Spoken, Words], Field(min_length=1)]
+"""Words, or the same in several languages: ``{en: the grey smoke, de: der graue Rauch}``. Instructions and answers of
+other languages than the questions' name a thing by its English words, or the first ones where there are none."""
 Point3: TypeAlias = Annotated[tuple[float, float, float], BeforeValidator(_as_tuple)]
 """``[x, y, z]`` in metres."""
 Point2: TypeAlias = Annotated[tuple[float, float], BeforeValidator(_as_tuple)]
@@ -99,3 +129,8 @@ def attributes_of(attributes: Mapping[str, tuple[str, ...]]) -> tuple[Attribute,
 def place_of(place: tuple[float, ...], layer_m: float) -> Vec3:
     """A place with its height; one given as ``[x, y]`` lies at ``layer_m``."""
     return (place[0], place[1], place[2] if len(place) == 3 else layer_m)
+
+
+def in_english(described: Described) -> str:
+    """The words that the map has for it."""
+    return described if isinstance(described, str) else described.get("en") or next(iter(described.values()))

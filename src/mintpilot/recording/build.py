@@ -21,6 +21,7 @@ from mintpilot.core.rule import Rule
 from mintpilot.core.semantic_map import SemanticMap
 from mintpilot.core.trajectory import FlightEnd
 from mintpilot.core.tree import Certificate, GapExplanation
+from mintpilot.recording.frames import FRAMES, frame_name
 from mintpilot.recording.history import History
 from mintpilot.recording.record import (
     AchievedRecord,
@@ -29,6 +30,7 @@ from mintpilot.recording.record import (
     FlightRecord,
     GapRecord,
     LeftRecord,
+    LookRecord,
     MissionRecord,
     NoticeRecord,
     OrderRecord,
@@ -82,6 +84,7 @@ def build_record(history: History, *, run_dir: str = "", unfinished: str = "") -
         certificate=_certificate(certificate) if certificate else None,
         achieved=_achieved(ended.verdict) if ended else (),
         left=_left(ended.verdict) if ended else (),
+        looks=_looks(ended.verdict, history.map, run_dir) if ended else (),
         rules=_rules(started.task.rules, ended.verdict if ended else None) if started else (),
         waiting=_waiting(ended.verdict) if ended else None,
         flight=flight,
@@ -112,6 +115,22 @@ def versions() -> dict[str, str]:
 
 def _achieved(verdict: Verdict) -> tuple[AchievedRecord, ...]:
     return tuple(AchievedRecord(n=one.n, text=one.text, at_s=one.at_s) for one in verdict.achieved)
+
+
+def _looks(verdict: Verdict, map: SemanticMap | None, run_dir: str) -> tuple[LookRecord, ...]:
+    views = {o.id: o.best_view for o in map.objects} if map is not None and run_dir else {}
+    return tuple(
+        LookRecord(
+            n=one.n,
+            text=one.text,
+            result=one.result,
+            what=one.what,
+            count=one.count,
+            pictures=tuple(f"{FRAMES}/{frame_name(view[0])}" for o in one.objects if (view := views.get(o))),
+            seen=one.seen_share,
+        )
+        for one in verdict.looks
+    )
 
 
 def _rules(rules: Sequence[Rule], verdict: Verdict | None) -> tuple[RuleRecord, ...]:

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from mintpilot.core.mission import Sight
 from mintpilot.core.observation import PERSON
 from mintpilot.recording.frames import FRAMES, frame_name
-from mintpilot.recording.record import MissionRecord, Part, SeenRecord
+from mintpilot.recording.record import LookRecord, MissionRecord, Part, SeenRecord
+from mintpilot.recording.spoken import PERSONS, SIGHTS
 
 
 class PeopleSummary(Part):
@@ -39,6 +41,27 @@ def people_lines(record: MissionRecord) -> list[str]:
         rooms = "1 room" if people.reported == 1 else f"{people.reported} rooms"
         lines.append(f"somebody is inside of {rooms}, by what was answered")
     return lines
+
+
+def look_line(look: LookRecord, lang: str = "en") -> str:
+    """What a look into a room came to, as a clause."""
+    person = look.what == PERSON
+    if lang in SIGHTS:
+        what = PERSONS[lang][look.count > 1] if person else look.what
+        said = SIGHTS[lang][look.result].format(count=look.count, what=what, share=f"{look.seen or 0:.0%}").strip()
+        return f"{look.text}: {': '.join([said, *([', '.join(look.pictures)] if look.pictures else [])])}"
+    match look.result:
+        case Sight.UNSEEN:
+            found = f"it could not be seen (through {look.seen or 0:.0%} of the doorway)"
+        case Sight.EMPTY:
+            found = (
+                "nobody is there" if person else f"no {look.what} was seen there" if look.what else "nothing is there"
+            )
+        case Sight.FOUND:
+            what = ("person" if look.count == 1 else "people") if person else look.what or "thing"
+            shown = f": {', '.join(look.pictures)}" if look.pictures else ""
+            found = f"found {look.count} {what}{'s' if look.count > 1 and not person else ''}{shown}"
+    return f"{look.text}: {found}"
 
 
 def people_seen(record: MissionRecord) -> list[SeenRecord]:

@@ -11,7 +11,7 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, JsonValue, Validati
 
 from mintpilot.core.errors import RecordError
 from mintpilot.core.gap import GapKind
-from mintpilot.core.mission import Outcome
+from mintpilot.core.mission import Outcome, Sight
 from mintpilot.core.query import Order, Reply
 from mintpilot.core.tree import LeafReason, StopReason
 
@@ -294,6 +294,24 @@ class LeftRecord(Part):
     """Seconds that there were."""
 
 
+class LookRecord(Part):
+    """What a look into a room came to."""
+
+    n: int
+    """Number of its step."""
+    text: str
+    result: Sight
+    """``found``, ``empty``, or ``could-not-see``: then what was asked is not known."""
+    what: str
+    """The class of what was asked for; empty: whatever is there."""
+    count: int
+    """How many were found."""
+    pictures: tuple[str, ...]
+    """The best picture of each who is on the map, in the run folder."""
+    seen: Figure
+    """Share of the doorway through which the room was seen, 0 to 1."""
+
+
 class MissionRecord(Part):
     """Everything that is kept of one mission."""
 
@@ -324,6 +342,8 @@ class MissionRecord(Part):
     """What was done, in order."""
     left: tuple[LeftRecord, ...] = ()
     """What was to be done and was not."""
+    looks: tuple[LookRecord, ...] = ()
+    """What looks into rooms came to, in order."""
     rules: tuple[RuleRecord, ...] = ()
     """Rules in time."""
     waiting: WaitingRecord | None = None

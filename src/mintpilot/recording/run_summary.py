@@ -9,6 +9,7 @@ from mintpilot.recording.record import (
     Figure,
     FlightRecord,
     LeftRecord,
+    LookRecord,
     MissionRecord,
     Part,
     RuleRecord,
@@ -54,6 +55,7 @@ class RunSummary(Part):
     gaps: tuple[GapSummary, ...]
     achieved: tuple[AchievedRecord, ...]
     left: tuple[LeftRecord, ...]
+    looks: tuple[LookRecord, ...]
     people: PeopleSummary
     rules: tuple[RuleRecord, ...]
     waiting: WaitingRecord | None
@@ -78,6 +80,7 @@ def summary(record: MissionRecord) -> RunSummary:
         gaps=tuple(GapSummary(**{name: getattr(g, name) for name in GapSummary.model_fields}) for g in record.gaps),
         achieved=record.achieved,
         left=record.left,
+        looks=record.looks,
         people=people_of(record),
         rules=record.rules,
         waiting=record.waiting,

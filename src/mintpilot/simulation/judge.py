@@ -10,6 +10,7 @@ from mintpilot.core.geometry import Bools, Box, Floats, Vec3
 from mintpilot.core.mission import Outcome, Verdict
 from mintpilot.core.plan import Stop
 from mintpilot.core.ports import Judge
+from mintpilot.core.room_view import RoomView
 from mintpilot.core.task import Action
 from mintpilot.simulation.scene import FlightRules, Landmark, Person, Scene, Solid
 
@@ -117,6 +118,13 @@ class SceneJudge(Judge):
             return
         if box_distance(target.extent_m, position_m) <= self._rules.pick_reach_m:
             self._goals_left.pop(0)
+
+    def view(self, stop: Stop, position_m: Vec3) -> RoomView | None:
+        """What is seen of the room that is looked into from there; None: no room is."""
+        for room in self._scene.rooms if stop.action is Action.LOOK else ():
+            if math.dist(position_m, room.viewpoint_m) <= self._rules.look_reach_m:
+                return RoomView(people=int(room.occupant is not None), seen_share=1.0)
+        return None
 
     def people(self) -> tuple[int, int]:
         """(how many of the people who must be found were found, how many there are)."""

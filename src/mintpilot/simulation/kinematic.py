@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -208,7 +208,10 @@ class KinematicSimulator(Vehicle, Judge):
         elif not isinstance(flown.motion, TakeOff):
             self._judge.hovered(as_vec3(self._position))
         end = MotionEnd.STOPPED if flown.braked else MotionEnd.ARRIVED
-        return self._ended(flown.motion, end, log=_log(flown))
+        ended = self._ended(flown.motion, end, log=_log(flown))
+        if not isinstance(flown.motion, PerformAction):
+            return ended
+        return replace(ended, view=self._judge.view(flown.motion.stop, as_vec3(self._position)))
 
     def _ended(self, motion: Motion, end: MotionEnd, *, log: FlightLog | None = None, reason: str = "") -> MotionEnded:
         return MotionEnded(time_s=self._time_s, motion=motion.id, end=end, vehicle=self.state(), log=log, reason=reason)

@@ -259,7 +259,8 @@ class MujocoSimulator(Vehicle, Camera, Judge):
             self._judge.hovered(here)
         if flown.braked:
             return self._ended(motion, MotionEnd.STOPPED, log=flown.ended(FlightEnd.INTERRUPTED))
-        return self._ended(motion, MotionEnd.ARRIVED, log=flown.ended(FlightEnd.ARRIVED))
+        ended = self._ended(motion, MotionEnd.ARRIVED, log=flown.ended(FlightEnd.ARRIVED))
+        return replace(ended, view=self._judge.view(motion.stop, here)) if isinstance(motion, PerformAction) else ended
 
     def _ended(self, motion: Motion, end: MotionEnd, *, log: FlightLog | None = None, reason: str = "") -> MotionEnded:
         state = self.state()

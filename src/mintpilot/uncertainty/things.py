@@ -98,7 +98,7 @@ def things_of(map: SemanticMap) -> tuple[Thing, ...]:
             size_m=o.box_m.size_m,
             goal_m=o.position_m,
             names=o.names,
-            behind_door=any(_is_inside(o.position_m, room) for room in map.rooms),
+            behind_door=any(room.searched and is_inside(o.position_m, room) for room in map.rooms),
         )
         for o in map.objects
     )
@@ -127,13 +127,13 @@ def _name(description: str) -> str:
     return words[end - 1] if words else ROOM
 
 
-def _is_inside(position_m: Vec3, room: Room) -> bool:
-    """Whether it was seen through the door: the drone has looked in, and it lies beyond the door as seen from there."""
+def is_inside(position_m: Vec3, room: Room) -> bool:
+    """Whether it lies beyond the door, as seen from where the drone looks in."""
     (door_x, door_y, _), (view_x, view_y, _) = room.door_m.centre_m, room.viewpoint_m
     ahead, beyond = (door_x - view_x, door_y - view_y), (position_m[0] - door_x, position_m[1] - door_y)
     along = ahead[0] * beyond[0] + ahead[1] * beyond[1]
     deep_m = math.hypot(*beyond)
-    return room.searched and deep_m <= _ROOM_DEPTH_M and along > 0.5 * deep_m * math.hypot(*ahead)
+    return deep_m <= _ROOM_DEPTH_M and along > 0.5 * deep_m * math.hypot(*ahead)
 
 
 def middle_m(points_m: Iterable[Vec3]) -> Vec3:

@@ -26,11 +26,11 @@ from mintpilot.conformance.faults.records import BreachRecord, FaultRecord
 from mintpilot.conformance.faults.records_kept import kept, replays
 from mintpilot.conformance.sample import sample_world
 from mintpilot.core.mission import Verdict
-from mintpilot.language.doubles import FunctionModel
 from mintpilot.mission.components import MissionComponents
 from mintpilot.mission.loop import fly_mission
 from mintpilot.mission_file.schema import MissionFile, OperatorSpec
 from mintpilot.mission_file.schema_world import ScenarioWorld
+from mintpilot.models.doubles import FunctionModel
 from mintpilot.recording.run_folder import RunFolder
 from mintpilot.simulation.scenarios import make_scenario
 

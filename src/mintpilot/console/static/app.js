@@ -1,9 +1,10 @@
 // Puts the page together: what comes over the link goes to the map, the card, the tree and the lists.
 
 import { Card } from "./card.js";
-import { $, make } from "./dom.js";
+import { $, make, renew } from "./dom.js";
 import { Link } from "./link.js";
 import { MapView } from "./map.js";
+import { Microphone } from "./microphone.js";
 import { Replay } from "./replay.js";
 import { Tell } from "./tell.js";
 import { showTree } from "./tree.js";
@@ -18,6 +19,7 @@ const map = new MapView($("map"), (spot) => card.choose(spot), (found) => tell.p
 const card = new Card(link, map);
 const tell = new Tell(link, map);
 const replay = new Replay(link);
+const microphone = new Microphone(link);
 const last = {}; // the newest of each pane, to say it again in another language
 
 const on = (pane, show) => link.addEventListener(pane, (event) => {
@@ -40,6 +42,8 @@ on("flown", ({ from, items }) => map.addFlown(from, items.map((i) => i.at)));
 on("steps", ({ data }) => showSteps(data));
 on("tree", ({ data }) => showTree(data));
 on("question", ({ data }) => card.set(data));
+on("microphone", ({ data }) => microphone.caption(data));
+on("spoken", ({ data, payload }) => microphone.play(data.n, payload));
 on("attention", ({ data }) => card.attend(data.to));
 on("camera", ({ data, payload }) => picture($("picture"), payload, data.boxes, say("camera")).then(() => { $("camera").hidden = false; }));
 on("log", ({ from, items }) => showLog(from, items));
@@ -52,9 +56,9 @@ function showMission(m) {
   $("name").textContent = m.name;
   $("instruction").textContent = m.instruction;
   $("briefing").replaceChildren(
-    ...(m.verdict ? [make("p", { class: `verdict ${m.verdict === "success" ? "good" : "bad"}`, role: "status" }, make("strong", { text: say("ended") }), make("span", { text: m.reason }),
+    ...(m.verdict ? [make("p", { class: `verdict ${m.verdict === "success" ? "good" : "bad"}`, role: "status" }, make("strong", { text: say("ended") }), make("span", { lang: "en", text: m.reason }),
       ...(m.waited_s >= 0.5 ? [make("span", { class: "figures", text: say("waited", Math.round(m.waited_s), Math.max(0, Math.round(m.hidden_s))) })] : []))] : []),
-    ...(m.briefing.length && !m.verdict ? [make("details", { open: true }, make("summary", { text: say("briefing") }), ...m.briefing.map((line) => make("p", { text: line })))] : []));
+    ...(m.briefing.length && !m.verdict ? [make("details", { open: true }, make("summary", { text: say("briefing") }), ...m.briefing.map((line) => make("p", { lang: "en", text: line })))] : []));
 }
 
 function showSeat(s) {
@@ -68,12 +72,13 @@ function showSeat(s) {
   for (const field of $("say").elements) field.disabled = !s.seated;
   card.setMay(s.seated);
   tell.setMay(s.seated);
+  microphone.setMay(s.seated);
   replay.draw();
 }
 
 function showOrders() {
   $("orders").setAttribute("aria-label", say("orders"));
-  $("orders").replaceChildren(...ORDERS.map((order) => make("button", {
+  renew($("orders"), ...ORDERS.map((order) => make("button", {
     type: "button", class: `order ${order}`, disabled: !last.seat?.data.may_answer, text: say(order), onclick: () => link.send({ kind: "order", order }),
   })));
 }
@@ -104,7 +109,7 @@ function showLog(from, items) {
   lines.length = Math.min(lines.length, from);
   lines.push(...items);
   const log = $("log-box"), below = log.scrollHeight - log.scrollTop - log.clientHeight < 40;
-  $("log").replaceChildren(...lines.slice(-200).map((l) => make("li", { class: `line-${l.kind}` }, make("time", { text: `${l.time_s.toFixed(0)} s` }), make("b", { text: say(`log-${l.kind}`) }), make("span", { text: l.text }))));
+  $("log").replaceChildren(...lines.slice(-200).map((l) => make("li", { class: `line-${l.kind}` }, make("time", { text: `${l.time_s.toFixed(0)} s` }), make("b", { text: say(`log-${l.kind}`) }), make("span", { lang: /^(question|answer)$/.test(l.kind) ? null : "en", text: l.text }))));
   if (below) log.scrollTop = log.scrollHeight;
 }
 
@@ -135,6 +140,7 @@ async function showEvidence(i, data, blob) {
 }
 
 function showLink(state) {
+  microphone.linked(state === "up");
   const box = $("link");
   if (state === "lost" && (last.mission?.data.verdict || replay.shown)) state = "up"; // the mission is over, and the program with it
   box.className = state;
@@ -157,6 +163,7 @@ function use(lang) {
   card.draw();
   tell.draw();
   replay.draw();
+  microphone.draw();
   if (last.mission) showMission(last.mission.data);
   if (last.seat) showSeat(last.seat.data);
   if (last.steps) showSteps(last.steps.data);
