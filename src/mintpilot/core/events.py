@@ -29,6 +29,8 @@ class MissionStarted:
     strategy: str
     language: str = "en"
     """In which questions are asked."""
+    names: tuple[tuple[str, str], ...] = ()
+    """What the mission file calls things in that language: English words, and the same."""
     language_model: str = "template"
     """Who words them: a registered name; ``template``: no model."""
     groups: tuple[CorrelationGroup, ...] = ()
