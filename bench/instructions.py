@@ -60,7 +60,9 @@ def main() -> None:
         print(*(f"  refused: {line}" for line in found.refused), sep="\n")
     if options.llm:
         model = load("language", options.llm)()
-        helped = score(read_rows(options.data), lambda text: parse_with_model(text, model, home_m=_HOME_M, timeout_s=60.0))
+        helped = score(
+            read_rows(options.data), lambda text: parse_with_model(text, model, home_m=_HOME_M, timeout_s=60.0)
+        )
         report(options.llm, helped)
 
 

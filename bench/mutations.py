@@ -56,7 +56,7 @@ class Mutant:
 
 
 def mutants_of(file: Path, root: Path) -> Iterator[Mutant]:
-    """All mutants of a file; annotations and texts are left alone."""
+    """All mutants of a file; annotations, texts and ``strict=`` of ``zip`` are left alone."""
     raw = file.read_bytes()
     starts = [0]
     for line in raw.splitlines(keepends=True):
@@ -92,6 +92,8 @@ def _below(node: ast.AST) -> Iterator[ast.expr]:
             continue
         for child in value if isinstance(value, list) else [value]:
             if isinstance(child, ast.JoinedStr | ast.FunctionDef | ast.ClassDef) or not isinstance(child, ast.AST):
+                continue
+            if isinstance(child, ast.keyword) and child.arg == "strict":
                 continue
             if isinstance(child, ast.expr):
                 yield child

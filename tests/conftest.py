@@ -4,12 +4,14 @@ import os
 import signal
 
 import pytest
-from hypothesis import settings
+from hypothesis import Phase, settings
 
 settings.register_profile("repeatable", derandomize=True)
 """For the continuous integration: the same examples each time, so that a change is judged by what it changed."""
 settings.register_profile("searching", print_blob=True)
 """Other examples each time: what a developer's own runs search through."""
+settings.register_profile("mutants", derandomize=True, deadline=None, phases=(Phase.explicit, Phase.generate))
+"""For small faults (`bench.mutants`): no limit of time, and no search for a smaller example."""
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "searching"))
 
 

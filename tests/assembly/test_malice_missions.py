@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import yaml
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from tests.assembly.llm_server import asked_in
 from tests.mission.scenes import hall
@@ -30,7 +30,7 @@ from mintpilot.core.events import Asked, Deliberated, LegFlown, MissionEnded
 from mintpilot.core.gap import PASSABLE, GapKind
 from mintpilot.core.mission import Outcome, Verdict
 from mintpilot.core.ports import Understand
-from mintpilot.core.query import Answer, Question, Reply
+from mintpilot.core.query import Answer, Question, Reply, Standing
 from mintpilot.interaction.answers import answer_of
 from mintpilot.interaction.scripted import FunctionOperator, ScriptedOperator
 from mintpilot.mission.loop import fly_mission
@@ -143,7 +143,8 @@ def check(world: World, verdict: Verdict, events: list[object]) -> None:
     allowed = {
         gap.subject
         for event in asked
-        if event.answer.reply is Reply.YES and event.answer.understood_by == "rules"
+        if event.answer.reply is Reply.YES
+        and (event.answer.understood_by == "rules" or event.answer.standing is Standing.CONFIRMED)
         for gap in event.question.gaps
         if gap.kind is GapKind.OBSTACLE
     }
@@ -197,6 +198,7 @@ HOSTILE = st.one_of(
 
 
 @settings(deadline=None, max_examples=25)
+@example(said=["lies as JSON"], toxic=False, error=0.0, seed=0)
 @given(st.lists(HOSTILE, min_size=1, max_size=4), st.booleans(), st.sampled_from([0.0, 0.05]), st.integers(0, 99))
 def test_any_model_at_all(said: list[str], toxic: bool, error: float, seed: int) -> None:
     turn = iter(range(10_000))

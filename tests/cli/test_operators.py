@@ -45,6 +45,10 @@ def test_the_command_refuses_them_before_anything_else(capsys: pytest.CaptureFix
     assert "alone" in capsys.readouterr().err
     assert main(["run", "nowhere.yaml", "--operator", "terminal", "--port", "8000"]) == 2
     assert "--operator console" in capsys.readouterr().err
+    assert main(["run", "nowhere.yaml", "--operator", "terminal", "--volume", "0.5"]) == 2
+    assert "--operator voice" in capsys.readouterr().err
+    assert main(["run", "nowhere.yaml", "--operator", "voice", "--volume", "7"]) == 2
+    assert "--volume 7" in capsys.readouterr().err
 
 
 def chosen(choice: tuple[str, ...], *, page: bool) -> tuple[object, ...]:
@@ -59,8 +63,8 @@ def chosen(choice: tuple[str, ...], *, page: bool) -> tuple[object, ...]:
 
 
 def test_page_and_terminal_stand_side_by_side() -> None:
-    assert len(chosen(("console", "terminal"), page=True)) == 2
-    assert len(chosen(("console",), page=True)) == 1
+    assert len(chosen(("console", "terminal"), page=True)) == 3  # the page, its microphone, the terminal
+    assert len(chosen(("console",), page=True)) == 2
     assert len(chosen(("terminal",), page=False)) == 1
     assert chosen((), page=False) == ("scripted",)
     assert chosen(("scripted",), page=False) == ("scripted",)

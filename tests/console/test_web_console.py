@@ -73,6 +73,35 @@ def polled(console: WebConsole, kind: type, time_s: float = 1.0):
     raise AssertionError(f"no {kind.__name__} came")
 
 
+def test_sound_of_the_browser_that_answers_is_taken_and_a_flood_of_it_ends_the_link(console: WebConsole):
+    with link(console) as browser, link(console, Role.WATCH, browser="b" * 16) as watcher:
+        until(browser, lambda m: m.get("pane") == "seat" and m["data"]["seated"])
+        browser.send(json.dumps({"kind": "microphone", "n": 1, "on": True}))
+        assert until(browser, lambda m: m.get("ack") == 1)["taken"]
+        console.microphone.collect()
+        watcher.send(b"\x02" * 640)
+        browser.send(b"\x01" * 640)
+        for _ in range(500):
+            if came := console.microphone.collect():
+                break
+            time.sleep(0.01)
+        assert came == b"\x01" * 640
+        with suppress(ConnectionClosed):
+            for _ in range(2000):
+                browser.send(bytes(3200))
+        with pytest.raises(ConnectionClosed) as ended:
+            until(browser, lambda _: False)
+        assert ended.value.rcvd is None or ended.value.rcvd.code == 4429
+
+
+@pytest.mark.parametrize("size", [4097, 100_000])
+def test_a_message_of_sound_that_is_too_long_ends_the_link(console: WebConsole, size: int):
+    with link(console) as browser:
+        browser.send(bytes(size))
+        with pytest.raises(ConnectionClosed):
+            until(browser, lambda _: False)
+
+
 def test_it_keeps_the_contract_of_operators():
     consoles: list[WebConsole] = []
 

@@ -7,7 +7,7 @@ import pytest
 from mintpilot.core.geometry import Box
 from mintpilot.core.observation import NameGuess
 from mintpilot.core.semantic_map import MapObject
-from mintpilot.mapping.body_parts import MOST, with_parts_counted
+from mintpilot.mapping.body_parts import MOST_CHANCE, with_parts_counted
 
 
 def part(id: str, x: float, person: float, *, label: str = "object", size: float = 0.3, bowl: float = 0.0) -> MapObject:
@@ -29,7 +29,7 @@ def test_the_largest_of_touching_parts_is_asked_about():
 
 def test_together_they_are_never_surely_a_person():
     made = persons(with_parts_counted([part(n, 0.3 * i, 0.45) for i, n in enumerate("abcdef")]))
-    assert max(made.values()) == MOST
+    assert max(made.values()) == MOST_CHANCE
 
 
 @pytest.mark.parametrize(

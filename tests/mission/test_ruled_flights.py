@@ -2,20 +2,28 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from mintpilot.assembly.components import Choices, components_for
+from mintpilot.assembly.flown_trace import FlownTrace
 from mintpilot.assembly.rule_judge import RuleJudge
 from mintpilot.assembly.worlds import build_world
 from mintpilot.core.events import LegFlown, OrderTaken
+from mintpilot.core.geometry import Box, GridFrame
 from mintpilot.core.mission import Outcome, Verdict
+from mintpilot.core.observation import RegionKind
+from mintpilot.core.plan import Site, Stop, VehicleLimits
 from mintpilot.core.query import Order
-from mintpilot.core.rule import About
+from mintpilot.core.rule import Rule
+from mintpilot.core.semantic_map import Cell, Region, Room, SemanticMap
+from mintpilot.core.task import Action, Task
 from mintpilot.mission.loop import fly_mission
+from mintpilot.mission.rule_progress import RuleProgress, done, flown
 from mintpilot.mission_file.reader import read_mission
-from mintpilot.rules.monitor import truth
-from mintpilot.rules.parsing import parse
+from mintpilot.rules import monitor
 
 ZONE_M = ((4.0, 0.0), (6.0, 5.0))
 RADIUS_M = 0.2
@@ -122,22 +130,22 @@ def is_kept(world, flown):
     beyond = np.maximum(np.maximum(lo - points[:, :2], points[:, :2] - hi), 0)
     away, depth = np.hypot(*beyond.T), np.minimum(points[:, :2] - lo, hi - points[:, :2]).min(axis=1)
 
-    def of(what):
-        match what.about:
-            case About.IN:
+    def of(about, subject, metres):
+        match about:
+            case "in":
                 return depth >= 0
-            case About.INSIDE:
+            case "inside":
                 return depth >= RADIUS_M
-            case About.TOUCHES:
+            case "touches":
                 return away < RADIUS_M
-            case About.WITHIN:
-                return away <= what.metres + RADIUS_M
-            case About.DID:
-                return np.array([what.subject in x for x in done])
+            case "within":
+                return away <= metres + RADIUS_M
+            case "did":
+                return np.array([subject in x for x in done])
             case _:
-                return np.array([what.subject in x for x in at])
+                return np.array([subject in x for x in at])
 
-    return all(truth(parse(rule.formula), of, len(points))[0] for rule in world.task.rules)
+    return all(monitor.is_kept(rule.formula, of, len(points)) for rule in world.task.rules)
 
 
 @pytest.mark.parametrize(
@@ -170,3 +178,45 @@ def test_the_judge_of_these_tests_finds_a_broken_rule(tmp_path):
     world, _, flown = fly(tmp_path, "{after: at(near), eventually: did(far)}")
     assert is_kept(world, flown)
     assert not is_kept(world, flown[1:])
+
+
+def test_the_judge_sees_what_happens_between_two_poses(tmp_path):
+    """Two poses on both sides of the zone, none in it."""
+    _, _, flown = fly(tmp_path, "{never: at(far)}")
+    log = replace(flown[0].log, position_m=np.array([[3.0, 2.0, 1.0], [7.0, 2.0, 1.0]]))
+    assert judged(tmp_path, "{never: in(zone)}", [replace(flown[0], log=log)]).rules_broken
+
+
+def test_a_region_between_two_poses_counts_for_how_far_the_rules_have_come(tmp_path):
+    (tmp_path / "hall.map").write_text("type octile\nheight 16\nwidth 24\nmap\n" + ("." * 24 + "\n") * 16)
+    (tmp_path / "m.yaml").write_text(FILE.format(rule="{after: in(zone), eventually: did(near)}", returns="none"))
+    world = build_world(read_mission(tmp_path / "m.yaml"), base=tmp_path, seed=0)
+    way = np.array([[3.0, 2.0, 1.0], [7.0, 2.0, 1.0]])
+    beside, across = (
+        flown(world.task, RuleProgress(), world.map, world.mission.limits, way + offset)
+        for offset in (np.zeros(3), np.array([0.0, 4.0, 0.0]))
+    )
+    assert beside.states != across.states
+    assert across.states == RuleProgress().states
+
+
+@pytest.mark.parametrize(("smoke", "wall", "seen"), [(False, False, True), (True, False, False), (False, True, False)])
+def test_a_room_is_looked_into_only_where_its_door_can_be_seen(smoke, wall, seen):
+    frame = GridFrame(origin_m=(0, 0, 0), resolution_m=0.5, shape=(1, 4, 12))
+    cells = np.full(frame.shape, Cell.FREE, np.uint8)
+    cells[0, :, 10:] = Cell.OCCUPIED  # the door, and what is behind
+    cells[0, :, 5] = Cell.OCCUPIED if wall else Cell.FREE
+    cloud = Region(id="smoke-1", kind=RegionKind.SMOKE, cells=np.array([12 + 6]))
+    door = Box(lo_m=(5.0, 0.0, 0.0), hi_m=(5.2, 2.0, 1.0))
+    map_ = SemanticMap(frame=frame, cells=cells, regions=(cloud,) if smoke else (),
+                       rooms=(Room(id="room", door_m=door, viewpoint_m=(1.25, 0.75, 0.25)),))  # fmt: skip
+    rule = Rule(text="", formula="F looked(room)")
+    task = Task(instruction="", subgoals=(), rules=(rule,))
+    stop = Stop(id="look:room", action=Action.LOOK, sites=(Site(position_m=(1.25, 0.75, 0.25), label="room"),))
+    at_m = np.array([1.25, 0.75, 0.25])
+    progress = done(task, RuleProgress(), map_, VehicleLimits(), stop, at_m)
+    assert (progress.held == 1) is seen
+    trace = FlownTrace(map_, task, 0.3)
+    trace.fly(np.stack([at_m - (0.5, 0, 0), at_m]))
+    trace.do("look:room")
+    assert bool(trace.of("looked", "room", 0.0)[-1]) is seen

@@ -41,7 +41,7 @@ from mintpilot.core.trajectory import VehicleState
 from mintpilot.mapping.drawn import drawn_cells
 from mintpilot.mission.belief_state import BeliefState
 from mintpilot.mission.deliberation import DeliberationParts
-from mintpilot.mission.directives import Deliberate, Directive, Move, Observe, WithdrawQuestion
+from mintpilot.mission.directives import Brake, Deliberate, Directive, Move, Observe, WithdrawQuestion
 from mintpilot.mission.state import READ_BACK_S, MissionState, Setup
 from mintpilot.mission.step import initial_state, step
 from mintpilot.mission.telling import MOST_TOLD
@@ -187,8 +187,49 @@ def test_undoing_restores_exactly_what_was(fact: Fact, others: list[Fact], looks
         if telling.known.standing is Standing.REFUSED:
             assert digest(scene.beliefs) == before
             continue
+        with_it = digest(scene.beliefs)
         scene.feed(FactUndone(time_s=0.0, told=telling.known.id))
+        if isinstance(telling.known.fact, KeepOut | RegionBlocked):
+            assert digest(scene.beliefs) == with_it, "caution is taken away by a confirmed act only"
+            scene.feed(FactConfirmed(time_s=0.0, told=telling.known.id))
         assert digest(scene.beliefs) == before, name
+
+
+@pytest.mark.parametrize("fact", AT_ONCE)
+@pytest.mark.parametrize("ends", ["denied", "not in time", "confirmed"])
+def test_taking_caution_back_is_read_back(fact: Fact, ends: str) -> None:
+    scene = Scene()
+    before = digest(scene.beliefs)
+    scene.tell(fact)
+    told, with_it = scene.last, digest(scene.beliefs)
+    directives = scene.feed(FactUndone(time_s=40.0, told=told, operator="somebody"))
+    assert scene.standing is Standing.UNDO_READ_BACK
+    assert not any(isinstance(one, WithdrawQuestion | Deliberate | Brake) for one in directives)
+    scene.feed(MapObserved(time_s=40.0, map=sample_world().map))
+    assert {r.id for r in scene.beliefs.map.regions if r.passable is Knowledge.NO} <= {"cloud", told}
+    end = {
+        "denied": FactUndone(time_s=41.0, told=told, operator="another"),
+        "not in time": Ticked(time_s=40.0 + READ_BACK_S),
+        "confirmed": FactConfirmed(time_s=41.0, told=told, operator="another"),
+    }[ends]
+    assert scene.state.next_deadline_s() <= 40.0 + READ_BACK_S
+    scene.feed(end)
+    assert scene.standing is (Standing.UNDONE if ends == "confirmed" else Standing.COUNTS)
+    if isinstance(fact, KeepOut):
+        assert digest(scene.beliefs) == (before if ends == "confirmed" else with_it)
+    scene.feed(FactConfirmed(time_s=80.0, told=told))
+    assert scene.standing is (Standing.UNDONE if ends == "confirmed" else Standing.COUNTS), "late is never"
+
+
+def test_what_is_drawn_before_the_first_map_is_not_taken_back_by_one_click() -> None:
+    scene = Scene(initial_state(Setup(mission=parts().mission), vehicle()))
+    scene.tell(SQUARE)
+    scene.feed(FactUndone(time_s=0.0, told=scene.last))
+    scene.feed(MapObserved(time_s=0.0, map=sample_world().map))
+    assert [r.passable for r in scene.beliefs.map.regions if r.id == scene.last] == [Knowledge.NO]
+    scene.feed(FactConfirmed(time_s=1.0, told=scene.last))
+    assert scene.standing is Standing.UNDONE
+    assert not [r for r in scene.beliefs.map.regions if r.id == scene.last]
 
 
 def test_a_read_back_is_confirmed_in_time_or_not_at_all() -> None:

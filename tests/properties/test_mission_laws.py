@@ -341,10 +341,10 @@ class Mission(RuleBasedStateMachine):
 
     def drawn(self) -> list[tuple[float, float, float, float]]:
         """The rectangles that are to be kept out of: left, low, right, high."""
-        stands = {one.known.id: one.known.standing for one in self.state.told}
+        counts = {one.known.id for one in self.state.told if one.known.counts}
         found = []
         for name, (fact, _) in self.told.items():
-            if isinstance(fact, KeepOut) and stands[name] is Standing.COUNTS:
+            if isinstance(fact, KeepOut) and name in counts:
                 (left, low), (right, high) = fact.corners_m[0], fact.corners_m[2]
                 found.append((left, low, right, high))
         return found
@@ -386,20 +386,28 @@ class Mission(RuleBasedStateMachine):
         if stood is Standing.READ_BACK and isinstance(fact, RegionPassable) and not self.ended:
             self.allowed[fact.region] = (outlines[fact.region], before.clock_s)
         elif stood is not Standing.READ_BACK and before.beliefs is not None and self.state.beliefs is not None:
-            assert self.state.beliefs.confirmed <= before.beliefs.confirmed, "only what is read back is confirmed"
+            restored = {f"obstacle:{fact.region}"} if isinstance(fact, RegionBlocked) else set()
+            allowed = before.beliefs.confirmed | (restored if stood is Standing.UNDO_READ_BACK else set())
+            assert self.state.beliefs.confirmed <= allowed, "only what is read back is confirmed"
+        if stood is Standing.UNDO_READ_BACK and not self.ended and self.state.beliefs is not None:
+            assert not any(region.id == name for region in self.state.beliefs.map.regions)
 
     @precondition(lambda self: bool(self.told))
     @rule(data=st.data())
     def something_told_is_undone(self, data: st.DataObject) -> None:
         name = data.draw(st.sampled_from(sorted(self.told)))
         fact, _ = self.told[name]
+        before = self.state
         self.feed(FactUndone(time_s=self.time_s, told=name))
         beliefs = self.state.beliefs
         if self.ended or beliefs is None:
             return
-        assert not any(region.id == name for region in beliefs.map.regions)
+        if before.beliefs is not None:
+            kept_out = {r.id for r in before.beliefs.map.regions if r.passable is Knowledge.NO}
+            assert kept_out <= {r.id for r in beliefs.map.regions if r.passable is Knowledge.NO}, "nothing unconfirmed"
+            assert entered(beliefs.map) <= entered(before.beliefs.map)
         last = [f for n, (f, _) in self.told.items() if n == name or self.stands(n) is Standing.COUNTS]
-        if isinstance(fact, RoomSearched) and last.count(fact) == 1:
+        if isinstance(fact, RoomSearched) and self.stands(name) is Standing.UNDONE and last.count(fact) == 1:
             assert fact.room not in searched(beliefs.map) or f"look:{fact.room}" in beliefs.finished
 
     def stands(self, name: str) -> Standing:

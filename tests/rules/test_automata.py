@@ -14,7 +14,7 @@ from mintpilot.core.errors import LimitError
 from mintpilot.core.rule import Rule
 from mintpilot.rules.compiling import MAX_STATES, compile_formula, compile_rules
 from mintpilot.rules.formula import negated
-from mintpilot.rules.monitor import truth
+from mintpilot.rules.monitor import is_kept, truth
 from mintpilot.rules.parsing import parse
 
 NAMES = "abc"
@@ -52,8 +52,39 @@ def test_every_short_trace_is_judged_by_the_definition(seed):
 @given(seeds, st.lists(st.sets(st.sampled_from(NAMES)).map(frozenset), min_size=1, max_size=9))
 def test_the_monitor_tells_what_the_definition_says_at_every_moment(seed, trace):
     formula = _formula(seed, depth=4)
-    found = truth(parse(ltlf.text(formula)), lambda p: np.array([p.subject in moment for moment in trace]), len(trace))
+    said = ltlf.text(formula)
+
+    def of(about, subject, metres):
+        assert (about, metres) == ("at", 0.0)
+        return np.array([subject in moment for moment in trace])
+
+    found = truth(said, of, len(trace))
     assert found.tolist() == [ltlf.holds(formula, trace, i) for i in range(len(trace))]
+
+
+@settings(deadline=None)
+@given(
+    st.recursive(
+        st.sampled_from(("at(a)", "at(b)", "at(c)", "true", "false")),
+        lambda inner: st.one_of(
+            st.builds("{} {} {}".format, inner, st.sampled_from(("->", "|", "&", "U", "R")), inner),
+            st.builds("{}{}".format, st.sampled_from(("!", "G ", "F ")), inner),
+            st.builds("({})".format, inner),
+        ),
+        max_leaves=6,
+    ),
+    st.lists(st.sets(st.sampled_from(NAMES)).map(frozenset), min_size=1, max_size=5),
+)
+def test_the_monitor_reads_without_brackets_what_the_automaton_does(said, trace):
+    automaton = compile_formula(parse(said))
+    kept = is_kept(said, lambda _, name, __: np.array([name in moment for moment in trace]), len(trace))
+    assert _accepts(automaton, trace) == kept, said
+
+
+@pytest.mark.parametrize("said", ["at(a) at(b)", "(at(a)", "at", "X at(a)", "at(a) &", "", "%"])
+def test_the_monitor_refuses_what_is_no_formula(said):
+    with pytest.raises(ValueError, match="'"):
+        is_kept(said, lambda *_: np.ones(2, bool), 2)
 
 
 @settings(deadline=None)

@@ -123,3 +123,8 @@ def test_a_conflict_names_the_rules_that_make_it():
 def test_a_rule_that_says_nothing_is_known():
     assert is_trivial(Rule(text="", formula="G(at(a) -> F at(a))"))
     assert not is_trivial(patterns.never(A))
+
+
+def test_a_sign_before_a_bracket_is_a_sign():
+    assert parse("at(a) U (true)") == parse("at(a) U true")
+    assert parse("at(a) R(false)") == parse("at(a) R false")

@@ -9,13 +9,16 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mintpilot.assembly.api import run_mission
-from mintpilot.assembly.components import Choices, deliberation_parts
+from mintpilot.assembly.components import Choices, VehicleChoice, deliberation_parts
 from mintpilot.assembly.worlds import build_world
+from mintpilot.core.events import Noticed
 from mintpilot.core.ports import Ask, Fly
 from mintpilot.core.query import Answer, Reply
 from mintpilot.core.tree import StopReason
 from mintpilot.mission.rehearsal import begin
 from mintpilot.mission_file.schema import MissionFile
+
+KINEMATIC = Choices(vehicle=VehicleChoice.KINEMATIC)
 
 
 def hall(
@@ -52,7 +55,7 @@ def hall(
 
 def decided(file: MissionFile):
     world = build_world(file, base=Path(), seed=0)
-    return begin(deliberation_parts(world, Choices()), world.map).deliberated()
+    return begin(deliberation_parts(world, KINEMATIC), world.map).deliberated()
 
 
 def test_a_cheap_look_on_the_way_is_taken_instead_of_asking():
@@ -114,9 +117,36 @@ def test_a_look_that_sees_nothing_is_not_tried_again():
 
 def test_an_unsure_operator_makes_it_look_where_that_pays():
     world = build_world(hall(dwell_s=1.0, asking={"reply_s": 0.5}), base=Path(), seed=0)
-    here = begin(deliberation_parts(world, Choices()), world.map)
+    here = begin(deliberation_parts(world, KINEMATIC), world.map)
     found = here.deliberated()
     assert isinstance(found.decision, Ask)
     after = here.asked(found).answered(Answer(reply=Reply.UNSURE, latency_s=0.0)).deliberated()
     assert isinstance(after.decision, Fly)
     assert after.decision.certificate.reason is StopReason.LOOK
+
+
+@pytest.mark.parametrize("vehicle", [VehicleChoice.MAVLINK, VehicleChoice.MUJOCO])
+def test_where_nothing_settles_a_look_it_is_not_offered(vehicle: VehicleChoice):
+    world = build_world(hall(sees=1.0), base=Path(), seed=0)
+    parts = deliberation_parts(world, Choices(vehicle=vehicle))
+    assert parts.mission.looks == ()
+    assert isinstance(begin(parts, world.map).deliberated().decision, Ask)
+
+
+@pytest.mark.sim
+@pytest.mark.slow
+def test_and_that_is_said():
+    pytest.importorskip("mujoco", reason="needs MuJoCo")
+    events: list[object] = []
+    run_mission(hall(sees=1.0), vehicle="mujoco", progress=events.append)
+    assert [e for e in events if isinstance(e, Noticed) and "left out" in e.text and "s1" in e.text]
+
+
+@pytest.mark.parametrize(("valid_s", "through"), [(120.0, True), (2.0, False)])
+def test_what_was_seen_ages_like_an_answer(valid_s: float, through: bool):
+    """With two seconds nothing that was seen lasts until the drone is through the cloud: it goes round."""
+    file = hall(sees=1.0, asking={"answer_valid_s": valid_s, "max_questions": 0})
+    record = run_mission(file, vehicle="kinematic")
+    assert record.outcome.value == "success", record.reason
+    assert [one.text for one in record.achieved].count("look at the smoke") == 1
+    assert (record.achieved[-1].at_s < 15.0) is through

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from mintpilot.conformance.vehicle_double.autopilot import DoubleMode
 from mintpilot.conformance.vehicle_double.body import Body
 from mintpilot.conformance.vehicle_double.faults import Fault
 from mintpilot.conformance.vehicle_double.parameters import Flavour
@@ -25,7 +26,10 @@ FLAVOURS = list(Flavour)
 
 def flying(**options) -> Rig:
     """A rig that hovers above the pad."""
+    faults = options.pop("faults", ())
     rig = Rig(**{"envelope": room(), **options})
+    for fault in faults:
+        rig.autopilot.switch_on(fault)
     rig.run(1.0)
     rig.tell(TakeOff(id=1, height_m=PAD[2]))
     assert rig.until_ended(1).end is MotionEnd.ARRIVED
@@ -43,9 +47,10 @@ def acts(rig: Rig) -> list[Action]:
     return [order.action for order in rig.of(Act)]
 
 
+@pytest.mark.parametrize("faults", [(), (Fault.NO_GPS,)])
 @pytest.mark.parametrize("flavour", FLAVOURS)
-def test_it_takes_off_flies_acts_and_lands(flavour):
-    rig = flying(flavour=flavour)
+def test_it_takes_off_flies_acts_and_lands(flavour, faults):
+    rig = flying(flavour=flavour, faults=faults)
     assert math.dist(rig.position_m, PAD) < 0.3
     set_out(rig)
     ended = rig.until_ended(2)
@@ -65,6 +70,46 @@ def test_it_takes_off_flies_acts_and_lands(flavour):
 
 def stop(action: StopAction) -> Stop:
     return Stop(id="s", action=action, sites=(Site(position_m=(7.0, 6.0, 1.0), label="box-1"),))
+
+
+def test_without_a_global_position_it_climbs_after_set_points_and_never_takes_a_leap():
+    rig = flying(faults=(Fault.NO_GPS,))
+    assert Action.TAKE_OFF not in acts(rig)
+    heights = [point.position_m[2] for point in rig.of(SetPoint)]
+    assert heights[0] == 0.0
+    assert max(np.diff(heights)) < 0.1
+
+
+def test_px4_may_end_its_take_off_too_low_and_is_brought_up():
+    rig = Rig(envelope=room())
+    rig.run(1.0)
+    rig.tell(TakeOff(id=1, height_m=PAD[2]))
+    rig.run(20.0, lambda rig: rig.position_m[2] > 0.9)
+    rig.autopilot.change_mode(DoubleMode.HOLD)
+    assert rig.until_ended(1).end is MotionEnd.ARRIVED
+    assert math.dist(rig.position_m, PAD) < 0.3
+
+
+def test_a_loop_that_is_silent_starts_no_motors():
+    rig = Rig(envelope=room())
+    rig.run(1.0)
+    rig.tell(TakeOff(id=1, height_m=PAD[2]))
+    rig.feeding = False
+    rig.run(10.0)
+    assert not rig.autopilot.airborne
+    assert not rig.autopilot.armed
+    assert rig.until_ended(1).end is MotionEnd.STOPPED
+
+
+def test_a_pilot_who_keeps_the_mode_keeps_it_on_the_ground():
+    rig = Rig(envelope=room())
+    rig.autopilot.switch_on(Fault.PILOT)
+    rig.run(1.0)
+    rig.tell(TakeOff(id=1, height_m=PAD[2]))
+    ended = rig.until_ended(1, 120.0)
+    assert ended.end is MotionEnd.FAILED
+    assert "switch decides" in ended.reason
+    assert Action.ARM not in acts(rig)
 
 
 def test_without_a_gripper_a_person_is_asked():

@@ -19,7 +19,7 @@ from mintpilot.conformance.vehicle_double.faults import Fault, TimedFault
 from mintpilot.conformance.vehicle_double.fence import HOME_ALTITUDE_M, HOME_DEG
 from mintpilot.conformance.vehicle_double.parameters import Flavour
 from mintpilot.conformance.vehicle_double.serving import DoubleSetup, DoubleState, VehicleDouble, free_port
-from mintpilot.core.events import Asked
+from mintpilot.core.events import Asked, FrameSeen
 from mintpilot.core.inputs import Ordered
 from mintpilot.core.query import Order
 from mintpilot.mission_file.reader import read_mission
@@ -114,6 +114,28 @@ def test_the_person_in_the_burning_warehouse_is_reached(flavour):
     assert is_down(state)
     assert not state.verdict
     assert [event for event in events if isinstance(event, Asked)]
+
+
+@pytest.mark.slow
+@pytest.mark.sim
+@pytest.mark.parametrize("flavour", FLAVOURS)
+def test_with_a_camera_it_makes_its_own_map_and_asks(flavour):
+    """Nothing is known of the room before the flight: pictures are drawn where the double says it is."""
+    pytest.importorskip("mujoco", reason="needs MuJoCo")
+    path = EXAMPLES / "medicine.yaml"
+    world = build_world(read_mission(path), base=path.parent, seed=0)
+    setup = DoubleSetup(flavour=flavour, port=free_port(), scene=world.scene, rules=world.rules, camera_port=0)
+    events = []
+    with VehicleDouble(setup) as double:
+        record = run_mission(
+            path, vehicle=f"mavlink://udpin:127.0.0.1:{setup.port}", camera=f"sim://127.0.0.1:{double.state().camera_port}",
+            seed=0, progress=events.append,
+        )  # fmt: skip
+        assert record.outcome.value == "success", record.reason
+        assert is_down(double.state())
+        assert not double.state().verdict
+    assert [event for event in events if isinstance(event, Asked)]
+    assert [event for event in events if isinstance(event, FrameSeen)]
 
 
 @pytest.mark.slow

@@ -18,7 +18,7 @@ from mintpilot.vehicle.address import parse_address
 from mintpilot.vehicle.failsafes import apply, may_return, return_height_m, return_settings, settings_for
 from mintpilot.vehicle.local_frame import LocalFrame, frame_at
 from mintpilot.vehicle.modes import Autopilot, mode_of
-from mintpilot.vehicle.signals import Mode
+from mintpilot.vehicle.signals import Mode, Start
 from mintpilot.vehicle.telemetry import Telemetry
 
 numbers = st.floats(-1e3, 1e3)
@@ -189,12 +189,47 @@ def test_the_double_is_as_strict_as_px4():
     px4.parameters.values["NAV_DLL_ACT"] = 3
     px4.step(20.0)
     px4.heard_ground(245, station=False)
+    assert "manual control" in px4.arm()
+    assert px4.change_mode(DoubleMode.HOLD) == ""
     assert "No connection to the GCS" in px4.arm()
     px4.heard_ground(245)
     assert px4.arm() == ""
     assert px4.change_mode(DoubleMode.FOLLOW) == "no offboard signal"
     px4.step(31.0)
     assert not px4.armed, "nothing came of it"
+
+
+def test_neither_firmware_is_armed_in_the_mode_of_its_last_landing():
+    for flavour in Flavour:
+        double = DoubleAutopilot(flavour)
+        double.step(1.0)
+        double.change_mode(DoubleMode.LAND)
+        assert not double.may_arm
+        assert "not armable" in double.arm()
+
+
+def test_px4_goes_back_to_offboard_after_a_landing_and_then_misses_its_set_points():
+    px4 = DoubleAutopilot(Flavour.PX4)
+    for tick in range(60):
+        px4.step(0.05 * tick)
+        px4.set_point(Target(ned_m=(0.0, 0.0, 0.0)))
+    assert px4.change_mode(DoubleMode.FOLLOW) == ""
+    assert px4.arm() == ""
+    px4.change_mode(DoubleMode.LAND)
+    for tick in range(60):
+        px4.step(3.0 + 0.05 * tick)
+    assert not px4.armed
+    assert px4.mode is DoubleMode.FOLLOW
+    assert "offboard signal" in px4.arm()
+
+
+def test_without_a_place_on_the_earth_px4_has_no_hold():
+    px4 = DoubleAutopilot(Flavour.PX4)
+    px4.switch_on(Fault.NO_GPS)
+    px4.step(1.0)
+    px4.change_mode(DoubleMode.HOLD)
+    assert not px4.may_arm
+    assert "global position" in px4.arm()
 
 
 def test_the_double_is_as_strict_as_ardupilot():
@@ -259,7 +294,48 @@ def test_ready_means_a_position_and_where_the_map_lies_on_the_earth_a_home_too()
     health.global_position = True
     assert "home" in heard.seen(LocalFrame(), georeferenced=True).not_ready
     health.home, health.armable = True, False
+    heard.take("GLOBAL_POSITION_INT", {"lat": 474_000_000, "lon": 85_000_000}, 1.0)
     assert "checks" in heard.seen(LocalFrame(), georeferenced=True).not_ready
+
+
+def test_how_its_motors_are_started():
+    heard = Telemetry()
+    heard.take("HEARTBEAT", {"autopilot": 3, "custom_mode": 0, "base_mode": 0}, 1.0)
+    assert heard.start is Start.GUIDED
+    heard.take("HEARTBEAT", {"autopilot": 12, "custom_mode": 0, "base_mode": 0}, 2.0)
+    heard.take("LOCAL_POSITION_NED", position(10, 0.0), 2.0)
+    heard.take("GLOBAL_POSITION_INT", {"lat": 0, "lon": 0}, 2.0)
+    assert heard.start is Start.SET_POINTS, "Hold needs a place on the earth"
+    heard.take("GLOBAL_POSITION_INT", {"lat": 474_000_000, "lon": 85_000_000}, 2.1)
+    assert heard.start is Start.HOLD
+    heard.take("LOCAL_POSITION_NED", position(20, 0.0), 9.0)
+    assert heard.start is Start.SET_POINTS, "it was lost"
+
+
+def test_px4_tells_only_whether_it_may_be_armed_in_the_mode_that_it_is_in():
+    heard = Telemetry()
+    heard.health.local_position = True
+    heard.take("HEARTBEAT", {"autopilot": 12, "custom_mode": 4 << 16 | 3 << 24, "base_mode": 0}, 2.0)
+    heard.take("LOCAL_POSITION_NED", position(10, 0.0), 2.0)
+    assert heard.seen(LocalFrame(), georeferenced=False).not_ready == ""
+    heard.take("HEARTBEAT", {"autopilot": 12, "custom_mode": 6 << 16, "base_mode": 0}, 3.0)
+    assert "checks" in heard.seen(LocalFrame(), georeferenced=False).not_ready
+
+
+def test_of_several_batteries_the_emptiest_that_flies_counts():
+    heard = Telemetry()
+    heard.take("BATTERY_STATUS", {"id": 0, "battery_function": 0, "battery_remaining": 80}, 1.0)
+    heard.take("BATTERY_STATUS", {"id": 1, "battery_function": 2, "battery_remaining": 60}, 1.0)
+    heard.take("BATTERY_STATUS", {"id": 2, "battery_function": 4, "battery_remaining": 5}, 1.0)  # the camera's
+    heard.take("BATTERY_STATUS", {"id": 3, "battery_function": 0, "battery_remaining": -1}, 1.0)
+    assert heard.seen(LocalFrame(), georeferenced=False).battery == 0.6
+
+
+def test_of_a_long_text_the_beginning_is_kept():
+    heard = Telemetry()
+    heard.take("STATUSTEXT", {"severity": 2, "text": "PreArm: the beginning", "id": 7, "chunk_seq": 0}, 1.0)
+    heard.take("STATUSTEXT", {"severity": 2, "text": "and the end", "id": 7, "chunk_seq": 1}, 1.0)
+    assert heard.seen(LocalFrame(), georeferenced=False).status == "PreArm: the beginning"
 
 
 def test_whole_parameters_go_as_bytes_on_px4_and_as_numbers_on_ardupilot():

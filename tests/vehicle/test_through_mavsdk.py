@@ -39,12 +39,19 @@ REPOSITORY = Path(__file__).parents[2]
 def both(flavour: Flavour, *faults: TimedFault, **options):
     """A double, and the vehicle at its other end, on the ground."""
     port = free_port()
-    with VehicleDouble(DoubleSetup(flavour=flavour, port=port, faults=faults)) as double:
-        vehicle = MavlinkVehicle(f"mavlink://udpin:127.0.0.1:{port}", **{"envelope": room(), **options})
-        try:
-            yield double, vehicle
-        finally:
-            vehicle.close()
+    setup = DoubleSetup(flavour=flavour, port=port, faults=faults)
+    with VehicleDouble(setup) as double, linked(port, **options) as vehicle:
+        yield double, vehicle
+
+
+@contextmanager
+def linked(port: int, **options):
+    """A vehicle on the ground, at the other end of what sends to that port."""
+    vehicle = MavlinkVehicle(f"mavlink://udpin:127.0.0.1:{port}", **{"envelope": room(), **options})
+    try:
+        yield vehicle
+    finally:
+        vehicle.close()
 
 
 def take_off(vehicle: MavlinkVehicle) -> None:
@@ -98,6 +105,44 @@ def test_it_takes_off_flies_and_lands_on_ardupilot_too():
         assert state.parameters["MAV_GCS_SYSID"] == 245
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("flavour", FLAVOURS)
+def test_the_next_mission_flies_after_the_last_landing(flavour):
+    """ArduPilot stays in LAND, PX4 goes back to OFFBOARD: neither is armed there."""
+    port = free_port()
+    with VehicleDouble(DoubleSetup(flavour=flavour, port=port)) as double:
+        for _ in range(2):
+            with linked(port) as vehicle:
+                take_off(vehicle)
+                assert land(vehicle).end is MotionEnd.ARRIVED
+            assert not double.state().armed
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("flavour", FLAVOURS)
+def test_it_flies_where_there_are_no_satellites(flavour):
+    with both(flavour, TimedFault(fault=Fault.NO_GPS)) as (double, vehicle):
+        take_off(vehicle)
+        set_out(vehicle, (4.0, 3.0, 1.5))
+        while not (events := vehicle.advance(vehicle.state().time_s + 0.5)):
+            pass
+        assert events[0].end is MotionEnd.ARRIVED
+        north, east, _ = double.state().ned_m
+        assert math.dist((PAD[0] + east, PAD[1] + north), (4.0, 3.0)) < 0.3
+        assert land(vehicle).end is MotionEnd.ARRIVED
+        assert double.state().fence_corners == 0
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("flavour", FLAVOURS)
+def test_rates_that_somebody_else_has_lowered_are_asked_for_again(flavour):
+    with both(flavour) as (double, vehicle):
+        vehicle.advance(vehicle.state().time_s + 6.0)
+        double.switch_on(Fault.SLOW_STREAMS)
+        assert waited(lambda: double.state().rates_hz[32] < 5, 2.0)
+        assert waited(lambda: double.state().rates_hz[32] > 15, 15.0)
+
+
 def test_nothing_on_the_port_is_told_by_its_name(monkeypatch):
     monkeypatch.setattr(connecting, "HEARD_S", 0.5)
     port = free_port()
@@ -111,6 +156,11 @@ def test_a_port_that_somebody_uses_is_told_by_its_name():
         port = taken.getsockname()[1]
         with pytest.raises(DeviceError, match=f"udpin://127.0.0.1:{port} cannot be opened"):
             MavsdkLink(parse_address(f"mavlink://udpin:127.0.0.1:{port}"))
+
+
+def test_a_serial_device_that_is_not_there_is_told_at_once():
+    with pytest.raises(DeviceError, match="nothing:57600 cannot be opened"):
+        MavsdkLink(parse_address("mavlink://serial:/dev/nothing:57600"))
 
 
 @pytest.mark.slow

@@ -222,6 +222,27 @@ def test_a_microphone_that_is_unplugged_is_said_once_and_survived(scene: Scene) 
     assert sum("cannot hear you" in caption for caption in scene.captions) == 1
 
 
+def test_muted_a_question_takes_as_long_as_reading_it_and_what_is_said_meanwhile_answers_nothing() -> None:
+    scene = Scene()
+    scene.operator.settings.muted = True
+    scene.operator.show(replace(sample_question(GapKind.OBSTACLE), id="q1"), 30.0)
+    scene.operator.poll(0.0)
+    assert scene.room.is_playing(0.0)
+    assert _answers(scene.says("no")) == []
+    assert len(_answers(scene.says("no"))) == 1
+    scene.operator.close()
+
+
+def test_beside_a_screen_what_is_not_understood_twice_is_left_to_it(scene: Scene) -> None:
+    scene.operator._has_screen = True
+    scene.asks()
+    assert scene.says("banana") == []
+    assert scene.says("banana") == []
+    assert "on the screen" in scene.captions[-1]
+    assert scene.says("no") == []
+    assert _orders(scene.says("stop")) == [Order.HOLD]
+
+
 def test_in_other_languages_only_keys_answer() -> None:
     scene = Scene(lang="de")
     scene.asks()

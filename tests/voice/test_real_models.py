@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+import time
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -16,6 +18,7 @@ from mintpilot.core.errors import MissingPartError
 from mintpilot.mission_file.reader import read_mission
 from mintpilot.voice.gpl import PiperSpeech
 from mintpilot.voice.hearing import Ear, Listener, Segmenter
+from mintpilot.voice.hibari import HibariSpeech
 from mintpilot.voice.loopback import Conditions, LoopbackPerson
 from mintpilot.voice.moonshine import MoonshineRecogniser
 from mintpilot.voice.operator import VoiceOperator
@@ -52,6 +55,21 @@ def test_words_of_the_closed_lists_are_heard_alike_by_both(ear: Ear, piper: Pipe
         heard = listener.feed(np.concatenate([quiet, piper.say(f"{word}."), quiet, quiet]))
         plain = [(h.text.strip(" .!").lower(), h.second.strip(" .!").lower(), h.is_sure) for h in heard]
         assert plain == [(word, word, True)]
+
+
+def test_the_drones_voice_is_understood_word_for_word_and_is_quick(ear: Ear) -> None:
+    speech = HibariSpeech()
+    begun = time.process_time()
+    sound = speech.say("I understood yes: I fly through it. Say confirm, or no.")
+    assert time.process_time() - begun < 0.7
+    heard = ear.first.hypotheses(sound)[0].text.casefold()
+    assert re.sub(r"\W+", " ", heard).strip() == "i understood yes i fly through it say confirm or no"
+
+
+def test_a_voice_whose_process_died_speaks_again(piper: PiperSpeech) -> None:
+    piper._process.kill()
+    piper._process.wait()
+    assert len(piper.say("Yes.")) > 0
 
 
 def test_rotors_alone_are_no_speech() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import wave
 from pathlib import Path
 
@@ -11,10 +12,12 @@ import pytest
 from mintpilot.core.errors import InputError, MissingPartError
 from mintpilot.core.geometry import Floats
 from mintpilot.voice.audio import clean, from_pcm, read_wav, write_wav
+from mintpilot.voice.devices import link_to
 from mintpilot.voice.doubles import ActivityDouble, RecogniserDouble, SpeechDouble
 from mintpilot.voice.echo import FRAME, EchoCanceller
 from mintpilot.voice.hearing import FLOOD_S, Ear, Listener, Segmenter, Utterance
 from mintpilot.voice.models import check, checked_files
+from mintpilot.voice.mouth import aloud
 from mintpilot.voice.ports import RATE_HZ, Hypothesis, Recogniser
 from mintpilot.voice.rotor import mixed, rotor_noise
 
@@ -97,6 +100,48 @@ def test_two_people_at_once_are_not_sure_or_not_read_alike() -> None:
     )  # fmt: skip
     (heard,) = listener.feed(np.concatenate([both, np.zeros(RATE_HZ)]))
     assert (heard.text, heard.second) == ("yes", "no")
+
+
+@pytest.mark.parametrize(
+    ("text", "lang", "said"),
+    [
+        ("2.5 m high, 3 s longer.", "en", "2.5 metres high, 3 seconds longer."),
+        ("3 s länger", "de", "3 Sekunden länger"),
+        ("at 4 m/s, 3 m", "en", "at 4 m/s, 3 metres"),
+    ],
+)
+def test_units_are_said_in_words(text: str, lang: str, said: str) -> None:
+    assert aloud(text, lang) == said
+
+
+def test_a_pipe_is_heard_as_it_fills_and_may_be_odd_or_closed(tmp_path: Path) -> None:
+    path = tmp_path / "pipe"
+    os.mkfifo(path)
+    link = link_to(path)
+    assert list(link.listen(0.0)) == []
+    writer = os.open(path, os.O_WRONLY)
+    try:
+        os.write(writer, b"\x00\x40\x00")
+        (first,) = link.listen(0.1)
+        os.write(writer, b"\xc0")
+        (second,) = link.listen(0.2)
+        assert (first.tolist(), second.tolist()) == ([0.5], [-0.5])
+    finally:
+        os.close(writer)
+    assert list(link.listen(0.3)) == []
+    link.play(np.zeros(RATE_HZ), 1.0)
+    assert (link.is_playing(1.5), link.is_playing(2.5)) == (True, False)
+    link.close()
+    link.close()
+
+
+def test_a_recording_takes_the_place_of_a_microphone(tmp_path: Path) -> None:
+    write_wav(tmp_path / "a.wav", 0.5 * np.ones(RATE_HZ))
+    link = link_to(tmp_path / "a.wav")
+    heard = np.concatenate([piece for time_s in (0.0, 0.25, 0.5, 5.0) for piece in link.listen(time_s)])
+    assert float(heard.sum()) == pytest.approx(0.5 * RATE_HZ, rel=1e-3)
+    with pytest.raises(InputError, match=r"missing\.wav"):
+        link_to(tmp_path / "missing.wav")
 
 
 class _Says(Recogniser):

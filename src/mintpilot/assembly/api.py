@@ -20,7 +20,7 @@ from mintpilot.core.ports import Ask, LanguageModel, Operator, Recorder
 from mintpilot.core.think_time import think_time
 from mintpilot.mission.explanations import explanations
 from mintpilot.mission.preview import preview
-from mintpilot.mission_file.reader import read_mission
+from mintpilot.mission_file.reader import check_contents, read_mission
 from mintpilot.mission_file.schema import MissionFile
 from mintpilot.vehicle.address import SCHEME, parse_address
 
@@ -68,7 +68,9 @@ def plan_mission(
     file, folder = _opened(mission, base)
     with talk_for(file.language, llm=llm, lang=lang, world=file.world) as talk:
         arguments = _arguments(file, strategy, strategy_arguments)
-        choices = Choices(strategy=strategy, strategy_arguments=arguments, planner=planner)
+        choices = Choices(
+            strategy=strategy, strategy_arguments=arguments, planner=planner, vehicle=VehicleChoice.KINEMATIC
+        )
         return _planned(file, folder, talk, choices, seed=seed)
 
 
@@ -112,6 +114,7 @@ def run_mission(
     lang: str | None = None,
     perception: str | None = None,
     accept_failsafes: bool = False,
+    camera: str = "",
     briefs: bool = False,
     views: bool = False,
     earlier: Path | None = None,
@@ -138,6 +141,8 @@ def run_mission(
         lang: in which questions are asked; default: as the file says.
         perception: registered name of what makes objects of pictures; default: as the file says.
         accept_failsafes: fly a real vehicle although its autopilot's fail-safes are not as they should be.
+        camera: frame source of a real vehicle's pictures: ``"realsense:"``, ``"sim://127.0.0.1:9003"``, a recording;
+            default: none, its map is given.
         briefs: whether the operator is asked go or no-go before take-off. One always is where a language model read the
             instruction.
         views: whether ``progress`` also gets pictures for a person who watches, up to five a second.
@@ -165,6 +170,7 @@ def run_mission(
         vehicle=vehicle_choice(vehicle),
         address=vehicle if "://" in vehicle else "",
         accept_failsafes=accept_failsafes,
+        camera=camera,
         perception=perception or file.perception.use,
         briefs=briefs,
         views=views,
@@ -222,7 +228,9 @@ class _Told(Recorder):
 
 def _opened(mission: str | Path | MissionFile, base: Path | None) -> tuple[MissionFile, Path]:
     if isinstance(mission, MissionFile):
-        return mission, base or Path.cwd()
+        folder = base or Path.cwd()
+        check_contents(mission, folder)
+        return mission, folder
     path = Path(mission)
     return read_mission(path), base or path.parent
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from contextlib import AbstractContextManager, ExitStack
+from contextlib import AbstractContextManager, ExitStack, suppress
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from pathlib import Path
@@ -13,13 +13,13 @@ import numpy as np
 
 from mintpilot.assembly.briefing import briefing_of
 from mintpilot.assembly.policies import make_metric, make_planner
-from mintpilot.assembly.stated_looks import with_stated_looks
+from mintpilot.assembly.stated_looks import settled_looks, with_stated_looks
 from mintpilot.assembly.strategies import Argument, make_objective, make_strategy, strategy_label
 from mintpilot.assembly.talk import Talk
 from mintpilot.assembly.worlds import World
-from mintpilot.core.errors import InputError
+from mintpilot.core.errors import InfeasibleError, InputError
 from mintpilot.core.geometry import Floats, GridFrame
-from mintpilot.core.ports import Judge, Operator, Perception, Recorder, Vehicle
+from mintpilot.core.ports import Camera, Judge, Operator, Perception, Recorder, Vehicle
 from mintpilot.core.semantic_map import SemanticMap
 from mintpilot.core.task import Action
 from mintpilot.core.think_time import think_time
@@ -49,7 +49,7 @@ class VehicleChoice(StrEnum):
     KINEMATIC = "kinematic"
     """Follows trajectories exactly; the map is what a perfect survey would show."""
     MAVLINK = "mavlink"
-    """A real vehicle, over MAVLink or by a plug-in; the map is given, and there is no camera."""
+    """A real vehicle, over MAVLink or by a plug-in; its map is given, or made of the pictures of a frame source."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -62,6 +62,8 @@ class Choices:
     vehicle: VehicleChoice = VehicleChoice.MUJOCO
     address: str = ""
     """Where a real vehicle is reached: ``mavlink://udpin:127.0.0.1:14540``."""
+    camera: str = ""
+    """Frame source of a real vehicle's pictures, e.g. ``realsense:``; empty: its map is given."""
     accept_failsafes: bool = False
     """Fly a real vehicle although its autopilot's fail-safes are not as they should be."""
     planner: str = "grid"
@@ -87,8 +89,9 @@ def deliberation_parts(world: World, choices: Choices, talk: Talk | None = None)
         InputError: the strategy does not take those arguments.
     """
     asking = world.mission.asking
+    kinematic = choices.vehicle is VehicleChoice.KINEMATIC or (choices.vehicle is VehicleChoice.MUJOCO and world.is_map)
     return DeliberationParts(
-        mission=world.mission,
+        mission=replace(world.mission, looks=settled_looks(world, kinematic=kinematic)),
         task=world.task,
         planner=make_planner(choices.planner),
         strategy=make_strategy(choices.strategy, seed=world.seed, arguments=choices.strategy_arguments),
@@ -110,8 +113,16 @@ class PartsBesideVehicle:
     names: tuple[tuple[str, str], ...]
 
     def __call__(self) -> DeliberationParts:
-        """The parts; questions are worded in the mission's language by template, and bettered by the loop."""
-        return deliberation_parts(self.world, self.choices, Talk(lang=self.lang, names=dict(self.names)))
+        """The parts; questions are worded in the mission's language by template, and bettered by the loop.
+
+        It deliberates once before the flight: what is loaded and compiled then is not waited for in the air.
+        """
+        from mintpilot.mission.rehearsal import begin
+
+        parts = deliberation_parts(self.world, self.choices, Talk(lang=self.lang, names=dict(self.names)))
+        with suppress(InfeasibleError):
+            begin(parts, self.world.map).deliberated()
+        return parts
 
 
 def scripted_operator(world: World, spec: OperatorSpec) -> ScriptedOperator:
@@ -166,6 +177,7 @@ class _Components(AbstractContextManager[MissionComponents]):
         self._world, self._choices, self._operators, self._recorder = world, choices, operators, recorder
         self._talk, self._digests = talk, digests
         self._perception: Perception | None = None
+        self._left_out = ""
         self._stack = ExitStack()
 
     def __enter__(self) -> MissionComponents:
@@ -179,32 +191,16 @@ class _Components(AbstractContextManager[MissionComponents]):
 
             simulator = MujocoSimulator(world.scene, world.rules, seed=world.seed, camera_size=choices.camera_size)
             self._stack.callback(simulator.close)
-            wanted = tuple(dict.fromkeys(g.reference.label for g in world.task.subgoals if g.reference.label))
-            from mintpilot.assembly.perceiving import Seeing, make_perception
-
-            perception = make_perception(
-                Seeing(
-                    perception=choices.perception,
-                    namers=choices.namers,
-                    wanted=wanted,
-                    calibration=choices.calibration,
-                )
-            )
-            self._perception = perception
-            builder = map_builder(world)
-            earlier = choices.earlier
-            surveys = world.mission.survey is not None and earlier is None
-            if earlier is not None:
-                builder.begin_with(earlier.map)
-            if surveys or earlier is not None:
-                # Whoever puts the drone down vouches for the space around it: the camera never sees it.
-                builder.mark_flown(np.asarray([world.mission.start_m], float), TAKE_OFF_CLEAR_M)
-            camera = CameraMapSource(camera=simulator, perception=perception, builder=builder, recorder=self._recorder)
-            source: MapSource = KeepAwayMapSource(camera, world) if world.task.keep_away else camera
-            known = earlier.map if earlier is not None else None if surveys else world.map
+            surveys, known = self._begins()
+            source = self._seeing(simulator, self._builder())
             made = self._made(simulator, source, surveys=surveys, known=known, watch_map=True)
-            viewed = simulator if choices.views else None
-            return replace(made, viewed=viewed, begins_with=earlier.words if earlier is not None else "")
+            return self._seen_through(made, simulator)
+        if choices.camera:
+            if choices.vehicle is not VehicleChoice.MAVLINK:
+                raise InputError(
+                    f"--camera {choices.camera} goes with a real vehicle (--vehicle mavlink://…); simulators have one"
+                )
+            return self._beside_vehicle()
         if choices.earlier is not None:
             raise InputError(
                 "--map needs a camera, which looks again at what was free: fly with --vehicle mujoco, or leave it out"
@@ -230,7 +226,7 @@ class _Components(AbstractContextManager[MissionComponents]):
         return self._made(kinematic, given, surveys=False, known=world.map, watch_map=changes)
 
     def _beside_vehicle(self) -> MissionComponents:
-        """A real vehicle on a given map. Nobody judges it, and it ends on the ground."""
+        """A real vehicle, on a given map or with a camera. Nobody judges it, and it ends on the ground."""
         from mintpilot.assembly.real_vehicle import make_vehicle
         from mintpilot.mission.process_worker import ProcessWorker
 
@@ -240,16 +236,66 @@ class _Components(AbstractContextManager[MissionComponents]):
                 f"'{world.mission.instruction}' was read by a language model: a real vehicle flies it only after "
                 "somebody has said go; use --operator terminal or console"
             )
-        vehicle = make_vehicle(world, choices.address, accept_failsafes=choices.accept_failsafes)
+        sees = bool(choices.camera)
+        surveys, known = self._begins() if sees else (False, world.map)
+        builder = self._builder(down_to_m=world.mission.volume.lo_m[2]) if sees else None
+        before = builder.snapshot() if builder is not None else None
+        vehicle = make_vehicle(world, choices.address, accept_failsafes=choices.accept_failsafes, known=before)
         self._stack.callback(vehicle.close)
-        beside = PartsBesideVehicle(
-            world=world, choices=choices, lang=self._talk.lang, names=tuple(self._talk.names.items())
-        )
-        return replace(
-            self._common(vehicle, GivenMap(world.map), known=world.map, watch_map=False),
+        names = tuple(self._talk.names.items())
+        beside = PartsBesideVehicle(world=world, choices=choices, lang=self._talk.lang, names=names)
+        source: MapSource = GivenMap(world.map)
+        camera: Camera | None = None
+        if builder is not None:
+            from mintpilot.assembly.vehicle_camera import live_camera
+
+            camera = live_camera(choices.camera, vehicle.state, getattr(vehicle, "tilt", None))
+            source = self._seeing(camera, builder)
+        made = replace(
+            self._common(vehicle, source, known=known, watch_map=sees),
             worker=lambda _: ProcessWorker(beside),
+            surveys=surveys,
             lands=True,
         )
+        return self._seen_through(made, camera)
+
+    def _begins(self) -> tuple[bool, SemanticMap | None]:
+        """Whether a survey makes the map, and what is known of it before."""
+        world, earlier = self._world, self._choices.earlier
+        if earlier is not None:
+            return False, earlier.map
+        surveys = world.mission.survey is not None
+        return surveys, None if surveys else world.map
+
+    def _builder(self, *, down_to_m: float | None = None) -> MapBuilder:
+        """Gathers what a camera sees; ``down_to_m``: the ground from which a real vehicle rises to its start."""
+        world, builder = self._world, map_builder(self._world)
+        surveys, known = self._begins()
+        if known is not None and (self._choices.earlier is not None or world.is_map):
+            builder.begin_with(known)
+        if surveys or self._choices.earlier is not None:
+            # Whoever puts the drone down vouches for the space around it: the camera never sees it.
+            x, y, z = world.mission.start_m
+            heights = [z] if down_to_m is None else np.arange(down_to_m, z, world.map.frame.resolution_m / 2).tolist()
+            builder.mark_flown(np.asarray([(x, y, height) for height in [z, *heights]], float), TAKE_OFF_CLEAR_M)
+        return builder
+
+    def _seeing(self, camera: Camera, builder: MapBuilder) -> MapSource:
+        """What makes the map of a camera's pictures."""
+        from mintpilot.assembly.perceiving import Seeing, make_perception
+
+        world, choices = self._world, self._choices
+        wanted = tuple(dict.fromkeys(g.reference.label for g in world.task.subgoals if g.reference.label))
+        self._perception = perception = make_perception(
+            Seeing(perception=choices.perception, namers=choices.namers, wanted=wanted, calibration=choices.calibration)
+        )
+        source = CameraMapSource(camera=camera, perception=perception, builder=builder, recorder=self._recorder)
+        return KeepAwayMapSource(source, world) if world.task.keep_away else source
+
+    def _seen_through(self, made: MissionComponents, camera: Camera | None) -> MissionComponents:
+        earlier = self._choices.earlier
+        viewed = camera if self._choices.views else None
+        return replace(made, viewed=viewed, begins_with=earlier.words if earlier is not None else "")
 
     def __exit__(self, *_: object) -> None:
         self._stack.close()
@@ -258,7 +304,8 @@ class _Components(AbstractContextManager[MissionComponents]):
         from mintpilot.assembly.perceiving import remarks_of
 
         seen = () if self._perception is None else tuple(remarks_of(self._perception))
-        return (*self._talk.take_remarks(), *seen)
+        left_out, self._left_out = self._left_out, ""
+        return (*self._talk.take_remarks(), *seen, *((left_out,) if left_out else ()))
 
     def _made(
         self,
@@ -288,6 +335,9 @@ class _Components(AbstractContextManager[MissionComponents]):
         self, vehicle: Vehicle, source: MapSource, *, known: SemanticMap | None, watch_map: bool
     ) -> MissionComponents:
         parts = deliberation_parts(self._world, self._choices, self._talk)
+        unsettled = [look.gap for look in self._world.mission.looks if look not in parts.mission.looks]
+        if unsettled:
+            self._left_out = f"Nothing here settles a look at {', '.join(unsettled)}: such looks are left out."
         briefed = self._choices.briefs or self._world.task.needs_confirmation
         return MissionComponents(
             parts=parts,

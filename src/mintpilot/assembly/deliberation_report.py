@@ -18,7 +18,7 @@ SCHEMA_VERSION = 1
 
 
 class _Report(BaseModel):
-    model_config = ConfigDict(frozen=True, extra="forbid", ser_json_inf_nan="null")
+    model_config = ConfigDict(frozen=True, extra="forbid", ser_json_inf_nan="null", defer_build=True)
 
 
 class GapReport(_Report):

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from mintpilot.assembly.components import Choices, deliberation_parts
+from mintpilot.assembly.components import Choices, VehicleChoice, deliberation_parts
 from mintpilot.assembly.talk import talk_for
 from mintpilot.assembly.worlds import build_world
 from mintpilot.core.decisions import FlyPlan
@@ -44,7 +44,7 @@ def _of_mission(path: Path) -> tuple[Mission, Plan]:
     file = read_mission(path)
     with talk_for(file.language, llm="template") as talk:
         world = build_world(file, base=path.parent, seed=None, parse=talk.parse)
-        parts = deliberation_parts(world, Choices(), talk)
+        parts = deliberation_parts(world, Choices(vehicle=VehicleChoice.MAVLINK), talk)
         found = begin(parts, world.map).deliberated()
         if not isinstance(found.decision, Fly):
             gaps = tuple(g for g in found.findings.gaps if g.id in found.decision.scored.query.gap_ids)

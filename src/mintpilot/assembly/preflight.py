@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from pathlib import Path
 
-from mintpilot.assembly.components import Choices, deliberation_parts
+from mintpilot.assembly.components import Choices, VehicleChoice, deliberation_parts
 from mintpilot.assembly.real_vehicle import checked_vehicle
 from mintpilot.assembly.talk import Talk
 from mintpilot.assembly.worlds import World, build_world
@@ -58,7 +58,7 @@ def _battery(world: World, left: float | None) -> Check:
 
 def _needed_s(world: World) -> float:
     """Seconds that the cautious plan takes; without one, those of the best plan there is."""
-    parts = deliberation_parts(world, Choices(), Talk())
+    parts = deliberation_parts(world, Choices(vehicle=VehicleChoice.MAVLINK), Talk())
     try:
         first = preview(world.map, parts, max_deliberations=1).first
     except InfeasibleError:

@@ -27,16 +27,18 @@ class RealVehicle(Vehicle, Protocol):
         ...
 
 
-def make_vehicle(world: World, address: str, *, accept_failsafes: bool = False) -> RealVehicle:
+def make_vehicle(
+    world: World, address: str, *, accept_failsafes: bool = False, known: SemanticMap | None = None
+) -> RealVehicle:
     """The vehicle at ``NAME://PLACE``, prepared on the ground.
 
     ``NAME`` is that of a plug-in for the port ``vehicle``; it is called with the whole address and a `SafetyEnvelope`,
     and by name with ``endurance_s``, ``georeference`` and ``accept_failsafes``. See `MavlinkVehicle` for what may go
-    wrong.
+    wrong. ``known`` is all that is known before the flight, where a camera makes the map; None: the world's map.
     """
     vehicle: RealVehicle = load("vehicle", address.partition("://")[0])(
         address,
-        envelope_of(world),
+        envelope_of(world, known),
         endurance_s=world.rules.endurance_s,
         georeference=world.mission.georeference,
         accept_failsafes=accept_failsafes,
@@ -56,13 +58,14 @@ def checked_vehicle(world: World, address: str, *, accept_failsafes: bool) -> Ma
     )
 
 
-def envelope_of(world: World) -> SafetyEnvelope:
+def envelope_of(world: World, known: SemanticMap | None = None) -> SafetyEnvelope:
     """What the link must know to end a flight by itself, of the map as it is before the flight.
 
     Only what is seen free down to the ground is landed on; a flat map shows no ground: what is free there may be. A
-    straight return is never flown without a georeference, nor on a flat map, which does not say how high things are.
+    straight return is never flown without a georeference, nor on a flat map, which does not say how high things are,
+    nor where a camera makes the map: ``known`` is then all that is known.
     """
-    mission, frame = world.mission, world.map.frame
+    mission, frame, map = world.mission, world.map.frame, known or world.map
     (x0, y0, z0), (x1, y1, z1) = mission.volume.lo_m, mission.volume.hi_m
     volume = mission.volume
     if frame.is_flat:
@@ -72,8 +75,8 @@ def envelope_of(world: World) -> SafetyEnvelope:
         hover_m=mission.start_m,
         ground_m=0.0 if frame.is_flat else z0,
         frame=frame,
-        landable=landable_cells(world.map, mission.limits),
-        tallest_m=None if frame.is_flat else tallest_m(world.map),
+        landable=landable_cells(map, mission.limits),
+        tallest_m=None if frame.is_flat or known is not None else tallest_m(map),
         outdoors=mission.georeference is not None,
     )
 

@@ -89,6 +89,7 @@ BUILT_IN: Final = MappingProxyType(
             {
                 "double": "mintpilot.voice.doubles:SpeechDouble",
                 "espeak": "mintpilot.voice.gpl:EspeakSpeech",
+                "hibari": "mintpilot.voice.hibari:HibariSpeech",
                 "piper": "mintpilot.voice.gpl:PiperSpeech",
             }
         ),

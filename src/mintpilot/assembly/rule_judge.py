@@ -1,28 +1,16 @@
-"""Whether a simulated flight kept its rules: LTLf's own definition on what was flown (method, section 14).
-
-Nothing of planning is used: no automaton, no grid of labels; distances are exact, to the surfaces of a region's cells.
-"""
+"""Whether a simulated flight kept its rules: LTLf's own definition on what was flown (method, section 14)."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 
-import numpy as np
-
+from mintpilot.assembly.flown_trace import FlownTrace
 from mintpilot.assembly.worlds import World
 from mintpilot.core.events import Event, LegFlown, OrderTaken
-from mintpilot.core.geometry import Bools, Floats, Ints
 from mintpilot.core.mission import Outcome, Verdict
-from mintpilot.core.plan import Stop
 from mintpilot.core.ports import Judge, Recorder
-from mintpilot.core.rule import About, Proposition, StopLetters
 from mintpilot.core.trajectory import FlightEnd
-from mintpilot.rules.compiling import compile_rules
-from mintpilot.rules.monitor import truth
-from mintpilot.rules.parsing import parse
-from mintpilot.uncertainty import letters_of, ruling_of
-
-_AT_ONCE = 2_000_000
+from mintpilot.rules.monitor import is_kept
 
 
 @dataclass(slots=True, eq=False)
@@ -41,17 +29,20 @@ class RuleJudge(Judge, Recorder):
     judge: Judge
     recorder: Recorder
     world: World
-    _where: list[Floats] = field(default_factory=list)
-    _letters: list[int] = field(default_factory=list)
-    _held: int = 0
+    _trace: FlownTrace = field(init=False)
     _ordered: bool = False
+
+    def __post_init__(self) -> None:
+        self._trace = FlownTrace(self.world.map, self.world.task, self.world.mission.limits.radius_m)
 
     def record(self, event: Event) -> None:
         """Keeps where the drone was and what it did there."""
         if isinstance(event, OrderTaken):
             self._ordered = True
         if isinstance(event, LegFlown) and event.phase != "survey" and len(event.log.position_m):
-            self._flown(event)
+            self._trace.fly(event.log.position_m)
+            if event.phase in ("mission", "meanwhile") and event.log.end is FlightEnd.ARRIVED:
+                self._trace.do(event.stop_id)
         self.recorder.record(event)
 
     def verdict(self) -> Verdict | None:
@@ -66,7 +57,7 @@ class RuleJudge(Judge, Recorder):
         """See `Judge.final`; a success under broken rules is none."""
         found = self.judge.final()
         failed = self.judge.verdict() is not None
-        if failed or self._ordered or not self._where:
+        if failed or self._ordered or not self._trace.moments:
             return found
         broken = tuple(self.broken())
         if not broken:
@@ -76,73 +67,5 @@ class RuleJudge(Judge, Recorder):
 
     def broken(self) -> list[str]:
         """Words of the rules that the flight so far has broken, if it ended now."""
-        automaton = compile_rules(self.world.task.rules)
-        ruling = ruling_of(self.world.map, self.world.task, automaton, ())
-        points = np.vstack(self._where)
-        letters = np.array(self._letters, np.int64)
-        found: dict[Proposition, Bools] = {}
-        for bit, what in enumerate(automaton.propositions):
-            if what.about.spatial:
-                found[what] = self._spatial(what, ruling.cells[bit], points)
-            else:
-                found[what] = np.asarray(letters >> bit & 1, bool)
-        return [
-            rule.text
-            for rule in self.world.task.rules
-            if not truth(parse(rule.formula), found.__getitem__, len(points))[0]
-        ]
-
-    def _flown(self, event: LegFlown) -> None:
-        way = event.log.position_m
-        self._where.append(way)
-        self._letters += [self._held] * len(way)
-        if event.phase not in ("mission", "meanwhile") or event.log.end is not FlightEnd.ARRIVED:
-            return
-        stop = self._stop(event)
-        one = (
-            StopLetters()
-            if stop is None
-            else letters_of(stop, self.world.map, self.world.task, compile_rules(self.world.task.rules))
-        )
-        after = (self._held | one.begins) & ~one.ends
-        self._where.append(np.repeat(way[-1:], 2, axis=0))
-        self._letters += [self._held | one.at, after | one.at]
-        self._held = after
-
-    def _stop(self, event: LegFlown) -> Stop | None:
-        """The stop of a leg, as far as its id tells; None for one of no task: where rules want the flight to end."""
-        from mintpilot.uncertainty.findings import find_gaps
-
-        findings = find_gaps(self.world.map, self.world.task, start_m=self.world.mission.start_m)
-        return next((stop for stop in findings.stops if stop.id == event.stop_id), None)
-
-    def _spatial(self, what: Proposition, cells: Ints, points: Floats) -> Bools:
-        frame, radius_m = self.world.map.frame, self.world.mission.limits.radius_m
-        inside = np.zeros(frame.size, bool)
-        inside[cells] = True
-        own = np.clip(frame.cells_of(points), 0, np.array(frame.shape) - 1)
-        centre_in = inside[np.ravel_multi_index(tuple(own.T), frame.shape)]
-        match what.about:
-            case About.IN:
-                return np.asarray(centre_in)
-            case About.INSIDE:
-                return np.asarray(centre_in & (self._away_m(np.flatnonzero(~inside), points) >= radius_m))
-            case About.WITHIN:
-                return np.asarray(self._away_m(cells, points) <= what.metres + radius_m)
-            case _:
-                return np.asarray(self._away_m(cells, points) < radius_m)
-
-    def _away_m(self, cells: Ints, points: Floats) -> Floats:
-        """Metres (n,) from points to the nearest surface of these cells; heights do not count on a flat map."""
-        frame = self.world.map.frame
-        found = np.full(len(points), np.inf)
-        if not len(cells):
-            return found
-        centres = frame.centres_of(np.stack(np.unravel_index(cells, frame.shape), axis=1))
-        axes = 2 if frame.is_flat else 3
-        step = max(1, _AT_ONCE // len(cells))
-        for i in range(0, len(points), step):
-            apart = np.abs(points[i : i + step, None, :axes] - centres[None, :, :axes])
-            gap = np.maximum(apart - frame.resolution_m / 2, 0)
-            found[i : i + step] = np.sqrt((gap**2).sum(axis=2)).min(axis=1)
-        return found
+        trace = self._trace
+        return [rule.text for rule in self.world.task.rules if not is_kept(rule.formula, trace.of, trace.moments)]

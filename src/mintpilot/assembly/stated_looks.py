@@ -1,4 +1,4 @@
-"""Looks that a mission file states: where no camera sees, standing there settles what they are about."""
+"""Looks that a mission file states: in the kinematic simulator, standing there settles what they are about."""
 
 from __future__ import annotations
 
@@ -60,7 +60,8 @@ class StatedLooks(MapSource):
     def draw(self, previous: SemanticMap | None) -> SemanticMap:
         """See `MapSource.draw`."""
         newer = self._source.draw(previous)
-        for region, known in self._seen.items():
+        seen, self._seen = self._seen, {}  # told once: from then on the mission keeps it, and lets it age
+        for region, known in seen.items():
             if any(one.id == region and one.passable is Knowledge.OPEN for one in newer.regions):
                 newer = newer.with_region(region, known)
         return newer
@@ -72,7 +73,24 @@ class StatedLooks(MapSource):
 
 def with_stated_looks(source: MapSource, world: World, state: Callable[[], VehicleState]) -> MapSource:
     """The source with what the looks of the world's mission show; ``state`` says where the drone is."""
-    gaps = find_gaps(world.map, world.task, start_m=world.mission.start_m).gaps
-    truths = {gap.id: world.truth.value_of(gap) for gap in gaps}
     rng = np.random.default_rng([world.seed, 13])
-    return StatedLooks(source, world.mission.looks, truths.get, state, rng)
+    return StatedLooks(source, world.mission.looks, _truths(world).get, state, rng)
+
+
+def settled_looks(world: World, *, kinematic: bool) -> tuple[Look, ...]:
+    """Those of the mission's looks that something settles.
+
+    Args:
+        world: with the mission.
+        kinematic: whether the kinematic simulator flies it, which knows how what is looked at truly is, where anybody
+            does. Neither a rendered camera nor a real vehicle tells whether a region is passable.
+    """
+    if not kinematic or not world.mission.looks:
+        return ()
+    truths = _truths(world)
+    return tuple(look for look in world.mission.looks if truths.get(look.gap) is not None)
+
+
+def _truths(world: World) -> dict[str, str | None]:
+    gaps = find_gaps(world.map, world.task, start_m=world.mission.start_m).gaps
+    return {gap.id: world.truth.value_of(gap) for gap in gaps}

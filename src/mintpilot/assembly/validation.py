@@ -10,7 +10,7 @@ from mintpilot.assembly.policies import check_metric_name
 from mintpilot.assembly.registry import check_name
 from mintpilot.assembly.worlds import build_world, listed_words, scenario_of
 from mintpilot.core.errors import MintPilotError
-from mintpilot.mission_file.reader import Place, Problem, find_problems, place_problems, read_mission
+from mintpilot.mission_file.reader import Place, Problem, place_problems, read_or_find_problems
 from mintpilot.mission_file.schema import MissionFile
 from mintpilot.mission_file.schema_world import MapWorld, ScenarioWorld
 from mintpilot.uncertainty.findings import find_gaps
@@ -24,7 +24,8 @@ def check_mission(path: str | Path) -> list[Problem]:
 
     A file of sound form is built as well, so that names, parameters and the instruction are known to be usable.
     """
-    return find_problems(path) or validation_problems(path, read_mission(path))
+    file, problems = read_or_find_problems(path)
+    return problems if file is None else validation_problems(path, file)
 
 
 def validation_problems(path: str | Path, file: MissionFile) -> list[Problem]:

@@ -19,6 +19,7 @@ from mintpilot.elicitation.candidates import gap_literals
 from mintpilot.uncertainty.findings import find_gaps
 from mintpilot.voice.hearing import Ear
 from mintpilot.voice.loopback import Conditions, LoopbackPerson, alike
+from mintpilot.voice.mouth import VoiceSettings
 from mintpilot.voice.operator import VoiceOperator, VoiceParts
 from mintpilot.voice.ports import Activity, Recogniser, SoundLink, Speech
 
@@ -115,17 +116,39 @@ def real_parts(link: SoundLink, *, lang: str = "en") -> VoiceParts:
         MissingPartError: one is not; the message says how to get it.
         InputError: a model file is not the pinned one.
     """
-    first, second = (load("recogniser", name)() for name in ("moonshine", "whisper"))
-    activity = load("activity", "silero")()
     return VoiceParts(
-        speech=load("speech", "piper" if lang == "en" else "espeak")(),
-        ear=Ear(first=first, second=second),
-        activity=activity,
+        speech=speech_for(lang),
+        ear=hears_here(),
+        activity=load("activity", "silero")(),
         link=link,
     )
 
 
-def voice_operator(link: SoundLink, talk: Talk, caption: Callable[[str], object]) -> VoiceOperator:
-    """A voice operator of a mission's language, made of the installed parts. Raises as `real_parts`."""
-    parts = real_parts(link, lang=talk.lang)
-    return VoiceOperator(parts, understand=talk.understand, order_of=talk.order_of, caption=caption, lang=talk.lang)
+def speech_for(lang: str) -> Speech:
+    """The installed voice of a language. Raises as `real_parts`."""
+    made: Speech = load("speech", "hibari" if lang == "en" else "espeak")()
+    return made
+
+
+def hears_here() -> Ear:
+    """Both installed recognisers. Raises as `real_parts`."""
+    first, second = (load("recogniser", name)() for name in ("moonshine", "whisper"))
+    return Ear(first=first, second=second)
+
+
+def voice_operator(
+    link: SoundLink, talk: Talk, show: Callable[[str], object], settings: VoiceSettings
+) -> VoiceOperator:
+    """A voice operator of a mission's language, made of the installed parts; ``show`` gets captions and what was heard.
+
+    Raises as `real_parts`.
+    """
+    return VoiceOperator(
+        real_parts(link, lang=talk.lang),
+        understand=talk.understand,
+        order_of=talk.order_of,
+        caption=lambda text: show(f"[spoken] {text}"),
+        heard=lambda text: show(f"[heard] {text}"),
+        lang=talk.lang,
+        settings=settings,
+    )

@@ -36,3 +36,12 @@ def student(values: Sequence[float]) -> tuple[float, float] | None:
 def clopper_pearson_upper(successes: int, n: int) -> float:
     """The exact one-sided 95 % upper bound of a share; 1 where nothing was tried."""
     return 1.0 if successes >= n else float(stats.beta.ppf(0.95, successes + 1, n - successes))
+
+
+def clopper_pearson(successes: int, n: int) -> tuple[float, float]:
+    """The exact two-sided 95 % interval of a share; the whole range where nothing was tried."""
+    if n == 0:
+        return (0.0, 1.0)
+    low = 0.0 if successes == 0 else float(stats.beta.ppf(0.025, successes, n - successes + 1))
+    high = 1.0 if successes == n else float(stats.beta.ppf(0.975, successes + 1, n - successes))
+    return (low, high)

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import json
+import re
 import time
 import zlib
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from functools import partial
 from pathlib import Path
 
@@ -19,10 +20,10 @@ from mintpilot.core.geometry import Floats
 from mintpilot.core.query import Order
 from mintpilot.core.reading import AnsweredBy, ReadingKind, guarded_replies
 from mintpilot.language.answers import confirmation_in, order_in, read_answer
-from mintpilot.voice.audio import read_wav
+from mintpilot.voice.audio import read_wav, write_wav
 from mintpilot.voice.hearing import Ear, Hearing, Segmenter
 from mintpilot.voice.ports import RATE_HZ, Activity, Speech
-from mintpilot.voice.rotor import mixed
+from mintpilot.voice.rotor import mixed, rotor_noise
 
 OTHER = "other"
 """What is said is no answer, order or confirmation."""
@@ -58,10 +59,12 @@ class VoiceTrial:
     is_sure: bool
     utterances: int
     sound_s: float
-    seconds: float
-    """Work of activity and recognition on this machine."""
+    cpu_s: float
+    """Processor time of activity and recognition."""
+    answer_cpu_s: float
+    """Of it, from the utterance's end to its text, for each utterance."""
     answer_s: float
-    """Of it, from the utterance's end to its text; without the silence that ends an utterance."""
+    """The same as time that passed; without the silence that ends an utterance."""
 
     @property
     def key(self) -> tuple[str, float | None]:
@@ -100,23 +103,67 @@ OFF_GRAMMAR = (
     "comfortable", "uniform", "platform", "farm", "come for me", "conformity", "we will confirm tomorrow",
     "did he confirm it", "nobody confirmed anything", "yes or no", "yes and no", "no idea about that", "note it down",
     "noon", "snow", "chess", "dress", "yesterday evening", "stand there", "sand", "top", "shop", "a stop sign",
-    "come back to me later", "the island",
+    "come back to me later", "the island", "yeah no", "I can confirm it is toxic", "confirm that again please",
+    "the captain confirmed it", "do not confirm", "yes but not now", "well yes and no", "yes yes but it is burning",
+    "no wait", "now", "know", "yet", "guess", "less", "it's a yes or no question", "landing gear", "land of hope",
+    "he landed yesterday", "stop it you two", "stopwatch", "can you hear me", "over and out", "roger", "copy that",
+    "go ahead", "tonight at eight on channel four", "the police have confirmed the reports", "three two one",
+    "nine hundred", "thank you very much", "pass me the radio", "the firm is closed", "information", "conference",
+    "a confirmed case",
 )  # fmt: skip
-"""None of them was among the clips that the thresholds were chosen on, but the first two."""
+"""None of them was among the clips that the thresholds were chosen on, but the first two. "Now" and "know" sound as no
+does, and are counted all the same."""
+ALONE_S = 20.0
+"""Length of one stretch of rotor noise, or of silence, seconds."""
 SYNTHETIC = (*((text, text) for text in ORDERS), *((text, OTHER) for text in OFF_GRAMMAR))
 """Phrases with what they say."""
 
 
 def synthetic_clips(voices: Iterable[tuple[str, Speech, str, float]]) -> list[Clip]:
     """The phrases in several voices: name, speech, its language or accent, speed."""
+    speakers = tuple(voices)
     return [
         Clip(
             name=f"{name}/{text}", source=name, says=says,
             samples=partial(speech.say, text, lang=lang, speed=speed),
         )
-        for name, speech, lang, speed in voices
         for text, says in SYNTHETIC
+        for name, speech, lang, speed in speakers
     ]  # fmt: skip
+
+
+def alone_clips(hours: float) -> list[Clip]:
+    """So many hours of rotors at many levels, and as many of silence with the hiss of a microphone; nobody speaks."""
+
+    def rotors(number: int) -> Floats:
+        rng = np.random.default_rng([number, 7])
+        return 10 ** (rng.uniform(-45, -10) / 20) * rotor_noise(int(ALONE_S * RATE_HZ), rng)
+
+    def silence(number: int) -> Floats:
+        rng = np.random.default_rng([number, 8])
+        return 10 ** (rng.uniform(-100, -60) / 20) * rng.standard_normal(int(ALONE_S * RATE_HZ))
+
+    return [
+        Clip(name=f"{source}/{number}", source=source, says=OTHER, samples=partial(make, number))
+        for source, make in (("rotors", rotors), ("silence", silence))
+        for number in range(round(3600 * hours / ALONE_S))
+    ]
+
+
+def kept_clip(clip: Clip, folder: Path) -> Clip:
+    """The same clip, whose sound is made once and kept in that folder."""
+    name = re.sub(r"\W+", "-", clip.name) + f"-{zlib.crc32(clip.name.encode()):08x}.wav"
+
+    def samples() -> Floats:
+        path = folder / name
+        if not path.exists():
+            folder.mkdir(parents=True, exist_ok=True)
+            made = path.with_suffix(".part")
+            write_wav(made, clip.samples())
+            made.rename(path)
+        return read_wav(path)
+
+    return replace(clip, samples=samples)
 
 
 def run_trials(
@@ -166,11 +213,14 @@ def outcome(trial: VoiceTrial) -> str:
 
     Yes and no are answers to a question about smoke; a yes is still to be read back and confirmed then.
     """
-    texts = (trial.text, trial.second)
+    return _meaning((trial.text, trial.second), trial.written, is_sure=trial.is_sure)
+
+
+def _meaning(texts: tuple[str, str], written: tuple[str, str], *, is_sure: bool) -> str:
     orders = [order_in(text) for text in texts]
-    if Order.HOLD in (*orders, *map(order_in, trial.written)):
+    if Order.HOLD in (*orders, *map(order_in, written)):
         return "stop"
-    if not trial.is_sure:
+    if not is_sure:
         return OTHER
     if orders[0] is not None and orders[0] is orders[1]:
         return {Order.RETURN: "come back", Order.LAND: "land"}.get(orders[0], orders[0].value)
@@ -185,22 +235,29 @@ def outcome(trial: VoiceTrial) -> str:
     return reading.reply.value if not readings and is_reply and reading.reply is not None else OTHER
 
 
+def _weight(heard: Hearing) -> tuple[bool, float]:
+    """Of several utterances in one clip the one counts that means something, else the longest."""
+    meaning = _meaning((heard.text, heard.second), heard.written, is_sure=heard.is_sure)
+    return meaning != OTHER, heard.duration_s
+
+
 def _tried(clip: Clip, snr_db: float | None, ear: Ear, activity: Activity) -> VoiceTrial:
     spoken = clip.samples()
     rng = np.random.default_rng([zlib.crc32(clip.name.encode()), 0 if snr_db is None else int(snr_db) + 100])
     sound = np.concatenate([np.zeros(int(_BEFORE_S * RATE_HZ)), spoken, np.zeros(int(_AFTER_S * RATE_HZ))])
     if snr_db is not None:  # the ratio is that of the clip, not of the silence around it
         sound = mixed(sound, snr_db - 10 * float(np.log10(len(spoken) / len(sound))), rng)
-    begun = time.perf_counter()
+    begun = time.process_time()
     utterances = Segmenter(activity, ear.settings).feed(np.concatenate([sound, np.zeros(int(_AFTER_S * RATE_HZ))]))
-    cut = time.perf_counter()
-    heard: list[Hearing] = [ear.hear(utterance) for utterance in utterances]
-    ended = time.perf_counter()
-    best = max(heard, key=lambda h: h.duration_s, default=None)
+    cut, cut_at = time.process_time(), time.perf_counter()
+    heard = [ear.hear(utterance) for utterance in utterances]
+    ended, ended_at = time.process_time(), time.perf_counter()
+    best, count = max(heard, key=_weight, default=None), max(1, len(heard))
     return VoiceTrial(
         name=clip.name, source=clip.source, says=clip.says, snr_db=snr_db,
         text=best.text if best else "", second=best.second if best else "",
         written=best.written if best else ("", ""),
         probability=best.probability if best else 0.0, is_sure=best.is_sure if best else False, utterances=len(heard),
-        sound_s=len(sound) / RATE_HZ, seconds=ended - begun, answer_s=(ended - cut) / max(1, len(heard)),
+        sound_s=len(sound) / RATE_HZ, cpu_s=ended - begun, answer_cpu_s=(ended - cut) / count,
+        answer_s=(ended_at - cut_at) / count,
     )  # fmt: skip

@@ -218,7 +218,9 @@ def voice(
     *,
     clips: Path | None = None,
     most: int | None = None,
-    voices: int = 6,
+    voices: int = 8,
+    kokoro: Path | None = None,
+    alone: float = 0.0,
     out: Path | None = None,
     json: Json = False,
     debug: Flag = False,
@@ -228,16 +230,21 @@ def voice(
     Args:
         clips: Folder of WAV files in yes, no and unknown. Default: synthesised phrases only.
         most: Recordings of each kind. Default: all.
-        voices: Number of synthesised voices, 0 to 6.
+        voices: Number of synthesised voices, 0 to 8.
+        kokoro: Folder "voices" of the npm package kokoro-js 1.2.1: four of those voices are spoken with as well.
+            Needs the extra "voice-bench".
+        alone: Hours of rotors, and as many of silence, in which nobody speaks.
         out: Folder of records. Default: nothing is kept.
         json: Print one JSON object, and nothing else, on standard output.
         debug: Show the traceback of an error.
     """
 
     def work() -> ExitCode:
+        from mintpilot.benchmark.voice_report import VoiceOptions
         from mintpilot.cli.bench_voice import bench_voice
 
-        return bench_voice(clips, most=most, voices=voices, out=out, as_json=json)
+        options = VoiceOptions(clips=clips, most=most, voices=voices, kokoro=kokoro, alone_h=alone, out=out)
+        return bench_voice(options, as_json=json)
 
     return guarded(work, as_json=json, debug=debug)
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from dataclasses import asdict
-from pathlib import Path
 
 from rich import box
 from rich.console import Console
@@ -15,18 +14,20 @@ from mintpilot.cli.exits import ExitCode
 from mintpilot.core.errors import InputError
 
 
-def bench_voice(clips: Path | None, *, most: int | None, voices: int, out: Path | None, as_json: bool) -> ExitCode:
+def bench_voice(options: VoiceOptions, *, as_json: bool) -> ExitCode:
     """Measures the installed recognisers.
 
     Raises:
         InputError: a number or folder that cannot be used.
     """
-    if not 0 <= voices <= 6:
-        raise InputError(f"--voices {voices}: must be 0 to 6")
-    if most is not None and most < 2:
-        raise InputError(f"--most {most}: must be 2 or more, since the threshold is chosen on one half")
+    if not 0 <= options.voices <= 8:
+        raise InputError(f"--voices {options.voices}: must be 0 to 8")
+    if options.most is not None and options.most < 1:
+        raise InputError(f"--most {options.most}: must be 1 or more")
+    if not 0 <= options.alone_h <= 24:
+        raise InputError(f"--alone {options.alone_h:g}: must be 0 to 24 hours")
     errors = Console(stderr=True, highlight=False, soft_wrap=True)
-    result = measure_voice(VoiceOptions(clips=clips, most=most, voices=voices, out=out), errors.print)
+    result = measure_voice(options, errors.print)
     if as_json:
         print(json.dumps(asdict(result), ensure_ascii=False))
         return ExitCode.SUCCESS

@@ -45,12 +45,8 @@ def look() -> Iterator[Finding]:
 
     def spoken() -> str:
         nonlocal sound
-        speech = load("speech", "piper")()
-        try:
-            sound = speech.say(_WORD)
-        finally:
-            speech.close()
-        return f"piper, {level_db(sound):.0f} dB"
+        sound = load("speech", "hibari")().say(_WORD)
+        return f"hibari, {level_db(sound):.0f} dB"
 
     def heard(name: str) -> str:
         found = load("recogniser", name)().hypotheses(sound) if len(sound) else ()

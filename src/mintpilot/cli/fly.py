@@ -48,6 +48,28 @@ def operator_names(given: Sequence[str]) -> tuple[str, ...]:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class VoiceFlags:
+    """How it sounds, as the command line says it.
+
+    Raises:
+        InputError: a volume or speed beyond its bounds.
+    """
+
+    listen_to: Path | None = None
+    """A recording or a pipe in the microphone's place; None: the microphone."""
+    volume: float = 1.0
+    """0 to 1; 0: captions only."""
+    speed: float = 1.0
+    """0.5 to 2."""
+
+    def __post_init__(self) -> None:
+        if not 0 <= self.volume <= 1:
+            raise InputError(f"--volume {self.volume:g}: must be 0 (captions only) to 1")
+        if not 0.5 <= self.speed <= 2:
+            raise InputError(f"--speech-speed {self.speed:g}: must be 0.5 to 2")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class FlightOptions:
     """How a mission is flown, as the command line says it."""
 
@@ -73,8 +95,12 @@ class FlightOptions:
     """What makes objects of pictures, by name; None: as the mission file says."""
     accept_failsafes: bool = False
     """Fly a real vehicle whose autopilot's fail-safes are not as they should be."""
+    camera: str = ""
+    """Where a real vehicle's pictures come from; empty: nowhere."""
     earlier: Path | None = None
     """Run folder whose map the mission begins with; None: it makes its own."""
+    voice: VoiceFlags = VoiceFlags()
+    """How questions are said, and where answers are heard."""
     page: PageOptions | None = None
     """Where the web page is served, beside whoever else answers; None: it is not."""
 
@@ -118,6 +144,7 @@ def fly(path: Path, options: FlightOptions) -> ExitCode:
                     served,
                     stack,
                     notes=notes,
+                    voice=options.voice,
                     real="://" in options.vehicle,
                 ),
                 vehicle=options.vehicle,
@@ -132,6 +159,7 @@ def fly(path: Path, options: FlightOptions) -> ExitCode:
                 lang=options.lang,
                 perception=options.perception,
                 accept_failsafes=options.accept_failsafes,
+                camera=options.camera,
                 earlier=options.earlier,
                 views=served is not None,
                 briefs=served is not None or (_somebody(errors) and options.operators != ("scripted",)),
@@ -164,6 +192,7 @@ def _operators(
     closing: ExitStack,
     *,
     notes: QuestionNotes,
+    voice: VoiceFlags = VoiceFlags(),
     real: bool,
 ) -> tuple[AnyOperator, ...]:
     """Whoever answers. Where nobody is named: the page if there is one, and the terminal where somebody is there."""
@@ -177,9 +206,9 @@ def _operators(
         return ("scripted",)
     if choice == ("scripted",):
         return ("scripted",)
-    made: list[AnyOperator] = [] if served is None else [served.operator]
+    made: list[AnyOperator] = [] if served is None else [served.operator, served.voice]
     if "voice" in choice:
-        made.append(_voice(console, closing))
+        made.append(_voice(console, closing, voice))
     # by voice, keys answer as well
     if "terminal" in choice or (somebody and choice in ((), ("voice",))):
         made.append(_terminal(console, narrator, notes))
@@ -212,16 +241,18 @@ def _is_null(stream: TextIO) -> bool:
         return False
 
 
-def _voice(console: Console, closing: ExitStack) -> AnyOperator:
+def _voice(console: Console, closing: ExitStack, choice: VoiceFlags) -> AnyOperator:
     """The person who speaks here."""
     from mintpilot.assembly.voiced import voice_operator
-    from mintpilot.voice.devices import PortAudioLink
+    from mintpilot.voice.devices import link_to
+    from mintpilot.voice.mouth import VoiceSettings
 
-    link = PortAudioLink()
+    settings = VoiceSettings(volume=choice.volume, speed=choice.speed, muted=choice.volume == 0)
+    link = link_to(choice.listen_to)
     closing.callback(link.close)
 
     def made(talk: Talk) -> Operator:
-        person = voice_operator(link, talk, lambda text: console.print(f"[spoken] {text}", markup=False))
+        person = voice_operator(link, talk, lambda text: console.print(text, markup=False), settings)
         closing.callback(person.close)
         return person
 

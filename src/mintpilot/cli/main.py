@@ -129,11 +129,15 @@ def run(
     perception: str | None = None,
     map: Path | None = None,
     accept_failsafes: Flag = False,
+    camera: str = "",
     host: str | None = None,
     port: Port = None,
     tls_cert: Path | None = None,
     tls_key: Path | None = None,
     tls_self_signed: Path | None = None,
+    volume: float | None = None,
+    speech_speed: float | None = None,
+    listen_to: Path | None = None,
     out: Path | None = None,
     json: Json = False,
     debug: Flag = False,
@@ -158,22 +162,33 @@ def run(
         map: Run folder of an earlier mission in the same place: this one begins with its map, in place of a survey. Its
             age is told; what was free is looked at again as it comes into view; what was permitted is asked again.
         accept_failsafes: Fly a real vehicle although its autopilot's fail-safes are not as they should be.
+        camera: Of a real vehicle: where its pictures come from: realsense:, sim://127.0.0.1:PORT, a recording as for
+            'see', or a plug-in's. The map is then made in flight. Default: none, the map is given.
         host: Of the web page: where it is served. Default: 127.0.0.1, for this machine only; elsewhere with TLS only.
         port: Of the web page. Default: any that is free.
         tls_cert: Of the web page: its certificate, PEM.
         tls_key: Of the web page: the certificate's key, PEM.
         tls_self_signed: Of the web page: a folder in which a self-signed pair is made, and used again next time.
             Browsers warn of it once; its fingerprint is printed.
+        volume: Of questions that are said: 0 (captions only) to 1. Default: 1.
+        speech_speed: Of questions that are said: 0.5 to 2. Default: 1.
+        listen_to: A WAV file, or a pipe of 16-bit samples at 16 kHz, heard in the microphone's place. Nothing is
+            played then.
         out: Run folder; a new one under ./runs by default.
         json: Print the outcome, questions, gaps and figures as one JSON object, and nothing else, on standard output.
             The whole record is in the run folder.
         debug: Show the traceback of an error.
     """
-    from mintpilot.cli.fly import FlightOptions, fly, operator_names
+    from mintpilot.cli.fly import FlightOptions, VoiceFlags, fly, operator_names
     from mintpilot.cli.web_page import BESIDE_S, PageOptions
 
     try:
         people = operator_names(operator or ())
+        sounds = VoiceFlags(
+            listen_to=listen_to,
+            volume=1.0 if volume is None else volume,
+            speed=1.0 if speech_speed is None else speech_speed,
+        )
     except InputError as error:
         return fail(str(error), as_json=json)
     page = None
@@ -191,9 +206,12 @@ def run(
         )
     elif (host, port, tls_cert, tls_key, tls_self_signed) != (None,) * 5:
         return fail("--host, --port and --tls-... go with --operator console only", as_json=json)
+    if "voice" not in people and (volume, speech_speed, listen_to) != (None,) * 3:
+        return fail("--volume, --speech-speed and --listen-to go with --operator voice only", as_json=json)
     options = FlightOptions(
         operators=people,
         page=page,
+        voice=sounds,
         vehicle=vehicle,
         strategy=strategy,
         strategy_args=tuple(strategy_arg or ()),
@@ -207,6 +225,7 @@ def run(
         perception=perception,
         earlier=map,
         accept_failsafes=accept_failsafes,
+        camera=camera,
     )
     return guarded(lambda: fly(mission, options), as_json=json, debug=debug)
 

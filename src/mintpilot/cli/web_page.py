@@ -101,6 +101,15 @@ class ServedPage:
                 break
         return page
 
+    def voice(self, talk: Talk) -> Operator:
+        """Who hears the microphone of the page, and speaks there; made after `operator`."""
+        from mintpilot.assembly.page_voice import PageVoice
+
+        assert self._page is not None
+        heard = PageVoice(self._page.microphone, talk)
+        self._stack.callback(heard.close)
+        return heard
+
 
 def browser_can_open() -> bool:
     """Whether a browser window can be opened for the person at this terminal."""

@@ -7,9 +7,11 @@ from collections import deque
 from dataclasses import dataclass, field
 
 from mintpilot.console.access import Role
+from mintpilot.console.microphone import Microphone
 from mintpilot.console.protocol import (
     AnyCommand,
     LeaveSeat,
+    Listen,
     Ordering,
     Playing,
     QuestionSeen,
@@ -53,6 +55,8 @@ class Desk:
     """
 
     replays: bool = False
+    microphone: Microphone | None = None
+    """Of the browser that has the seat; None: nothing is heard here."""
     _lock: threading.Lock = field(default_factory=threading.Lock)
     _clients: list[Client] = field(default_factory=list)
     _inbox: deque[Asked] = field(default_factory=deque)
@@ -73,6 +77,8 @@ class Desk:
         """A link is gone. The seat stays with its browser: it may come back."""
         with self._lock:
             self._clients = [c for c in self._clients if c is not client]
+            if client.browser == self._seat and not any(c.browser == self._seat for c in self._clients):
+                self._fall_deaf()
 
     def seat(self, client: Client) -> SeatPane:
         """What that browser may do."""
@@ -98,16 +104,35 @@ class Desk:
                 if not (self.replays and isinstance(command, Seek | Playing)) or len(self._inbox) >= MOST_WAITING:
                     return False
                 self._inbox.append(Asked(command=command, who=client.who))
+            elif isinstance(command, Listen):
+                if client.browser != self._seat or self.microphone is None:
+                    return False
+                self.microphone.switch(command.on, aloud=command.aloud)
             elif isinstance(command, TakeSeat):
+                if self._seat != client.browser:
+                    self._fall_deaf()
                 self._seat = client.browser
             elif isinstance(command, LeaveSeat):
-                self._seat = "" if self._seat == client.browser else self._seat
+                if self._seat == client.browser:
+                    self._fall_deaf()
+                    self._seat = ""
             elif isinstance(command, Ordering) or (client.browser == self._seat and len(self._inbox) < MOST_WAITING):
                 self._inbox.append(Asked(command=command, who=client.who))
             elif not isinstance(command, QuestionSeen):
                 return False
             self._seen[client.browser] = command.n
             return True
+
+    def hear(self, client: Client, sound: bytes) -> None:
+        """Sound of a browser; that of any but the one that answers is left out."""
+        with self._lock:
+            if client.role is Role.ANSWER and client.browser == self._seat and self.microphone is not None:
+                self.microphone.take(sound)
+
+    def _fall_deaf(self) -> None:
+        """A microphone belongs to the browser that switched it on, and is not taken over."""
+        if self.microphone is not None:
+            self.microphone.switch(False)
 
     def collect(self) -> tuple[Asked, ...]:
         """What came since the last call, oldest first."""

@@ -138,6 +138,15 @@ class Playing(Command):
     """Mission seconds per second; 0: stop."""
 
 
+class Listen(Command):
+    """The microphone of this browser was switched on or off. Its sound comes as binary messages."""
+
+    kind: Literal["microphone"] = "microphone"
+    on: bool
+    aloud: bool = True
+    """Whether what the drone says is played."""
+
+
 class TakeSeat(Command):
     """This browser answers from now on."""
 
@@ -163,6 +172,7 @@ AnyCommand: TypeAlias = Annotated[
     | TookBack
     | Seek
     | Playing
+    | Listen
     | TakeSeat
     | LeaveSeat,
     Field(discriminator="kind"),
@@ -447,6 +457,24 @@ class SeatPane(Message):
     taken: bool
     """Whether the browser that answers is connected."""
     viewers: int
+
+
+class MicrophonePane(Message):
+    """Captions beside the microphone."""
+
+    problem: str = ""
+    """Why nothing is heard; empty: it is."""
+    said: str = ""
+    """What the drone said last."""
+    heard: str = ""
+    """What was heard last."""
+
+
+class SpokenPane(Message):
+    """Goes in front of sound that is played at once, in the place of what is still played; without sound: silence."""
+
+    n: int
+    """Counts up."""
 
 
 class FlownPoint(Message):

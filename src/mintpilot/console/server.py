@@ -28,6 +28,8 @@ BEAT_S = 1.0
 MOST_CLIENTS = 40
 """Links at one time."""
 _COMMANDS_AT_ONCE, _COMMANDS_A_SECOND = 20, 5.0
+_SOUNDS_AT_ONCE, _SOUNDS_A_SECOND = 60, 15.0
+"""Messages of a microphone; a tenth of a second is usual."""
 _START_S, _STOP_S = 10.0, 5.0
 _LAST_S = 0.3
 """Browsers get so long to hear how the mission ended, seconds."""
@@ -182,13 +184,20 @@ class ConsoleServer:
 
     async def _receive(self, link: WebSocket, client: Client, wake: Callable[[], None]) -> None:
         rate = Rate(burst=_COMMANDS_AT_ONCE, per_second=_COMMANDS_A_SECOND)
+        sound_rate = Rate(burst=_SOUNDS_AT_ONCE, per_second=_SOUNDS_A_SECOND)
         while True:
-            text = await link.receive_text()
-            if not rate.allows():
+            message = await link.receive()
+            if message["type"] == "websocket.disconnect":
+                return
+            sound = message.get("bytes")
+            if not (rate if sound is None else sound_rate).allows():
                 await link.close(_TOO_MUCH)
                 return
+            if sound is not None:
+                self._desk.hear(client, sound)
+                continue
             try:
-                command = COMMANDS.validate_json(text)
+                command = COMMANDS.validate_json(message.get("text") or "")
             except ValidationError:
                 await link.close(_REFUSED)
                 return
@@ -238,7 +247,7 @@ _HEADERS: Final = {
     "cross-origin-opener-policy": "same-origin",
     "cross-origin-resource-policy": "same-origin",
     "cache-control": "no-store",
-    "permissions-policy": "camera=(), microphone=(), geolocation=()",
+    "permissions-policy": "camera=(), microphone=(self), geolocation=()",
 }
 
 

@@ -12,6 +12,7 @@ from mintpilot.console.access import Address, Role, Tokens
 from mintpilot.console.answering import Answering, Heard, Turn
 from mintpilot.console.board import Board
 from mintpilot.console.desk import Asked, Desk
+from mintpilot.console.microphone import Microphone
 from mintpilot.console.mission_view import MissionView
 from mintpilot.console.protocol import AttentionPane, Said
 from mintpilot.core.errors import DeviceError, MissingPartError
@@ -53,7 +54,10 @@ class WebConsole(Operator, Recorder):
             from mintpilot.console.server import ConsoleServer
         except ImportError as error:
             raise MissingPartError("the web console needs its web server: pip install 'mintpilot[console]'") from error
-        self._board, self._desk = Board(), Desk()
+        self._board = Board()
+        self.microphone = Microphone(self._board)
+        """Of the browser that answers, for whoever can hear it."""
+        self._desk = Desk(microphone=self.microphone)
         self._order_of = order_of
         self._answering = Answering(understand)
         self._attention = 0

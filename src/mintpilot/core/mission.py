@@ -117,7 +117,8 @@ class AskingSettings:
     )
     failure_price_s: float = setting(
         600.0,
-        "What a failed mission counts for, in seconds of flight, where expected losses are weighed.",
+        "What a failed mission counts for, in seconds of flight, where expected losses are weighed. Unset: 600, or ten "
+        "flights across the map where that is longer.",
         least=0,
     )
     max_questions: int | None = setting(

@@ -77,6 +77,8 @@ class SourceOptions:
     """No more frames than this are used."""
     seed: int = 0
     """For simulated sources."""
+    live: bool = False
+    """Pictures are taken one by one in flight, as many as are asked for."""
 
 
 class FrameSource(Protocol):

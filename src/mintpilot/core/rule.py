@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import StrEnum
 
@@ -83,6 +84,12 @@ class Automaton:
         """Number of states."""
         return len(self.accepting)
 
+    def followed(self, states: frozenset[int], letters: Iterable[tuple[int, int]], held: int) -> frozenset[int]:
+        """The states that may be reached after (what holds, what may hold) one after another, ``held`` throughout."""
+        for yes, may in letters:
+            states = self.after(states, yes | held, may | held)
+        return states
+
     def after(self, states: frozenset[int], yes: int, may: int) -> frozenset[int]:
         """The states that may be reached while what is in ``may`` and not in ``yes`` is not known, or changes.
 
@@ -109,6 +116,14 @@ class StopLetters:
     """True from when it was done."""
     ends: int = 0
     """False from when it was done."""
+
+    def after(self, held: int) -> int:
+        """What holds from when it was done, if ``held`` did before."""
+        return (held | self.begins) & ~self.ends
+
+    def moments(self, held: int) -> tuple[int, int]:
+        """What holds while the drone is there, before it was done and after."""
+        return held | self.at, self.after(held) | self.at
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

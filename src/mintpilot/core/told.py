@@ -70,6 +70,8 @@ class Standing(StrEnum):
     READ_BACK = "read-back"
     """It would take caution away: it counts once it is confirmed."""
     COUNTS = "counts"
+    UNDO_READ_BACK = "undo-read-back"
+    """It counts. Taking it back would take caution away: that is done once it is confirmed."""
     UNDONE = "undone"
     """It was taken back, or not confirmed in time."""
     LAPSED = "lapsed"
@@ -94,3 +96,13 @@ class ToldFact:
     standing: Standing
     why: str = ""
     """Of one that was refused."""
+
+    @property
+    def counts(self) -> bool:
+        """Whether the mission goes by it."""
+        return self.standing in (Standing.COUNTS, Standing.UNDO_READ_BACK)
+
+    @property
+    def read_back(self) -> bool:
+        """Whether it, or taking it back, waits to be confirmed."""
+        return self.standing in (Standing.READ_BACK, Standing.UNDO_READ_BACK)

@@ -74,7 +74,7 @@ class RealSense(FrameSource):
             pipeline.stop()
 
     def _converted(self, take: Any) -> Iterator[RawFrame]:
-        for _ in range(min(FRAMES, self._options.longest)):
+        for _ in range(self._options.longest if self._options.live else min(FRAMES, self._options.longest)):
             frameset = take()
             if frameset is None:
                 return

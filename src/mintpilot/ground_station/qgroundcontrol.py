@@ -18,7 +18,7 @@ Firmware = Literal["px4", "ardupilot"]
 
 
 class _Part(BaseModel):
-    model_config = ConfigDict(extra="ignore", frozen=True, allow_inf_nan=False)
+    model_config = ConfigDict(extra="ignore", frozen=True, allow_inf_nan=False, defer_build=True)
 
 
 class _SimpleItem(_Part):

@@ -119,7 +119,8 @@ ENGLISH = AnswerWords(
     unsure=r"(?:do not|don't|dont|wouldn't) know|dunno|no idea|no clue|not sure|unsure|(?:can't|cannot|couldn't|can "
         r"not) (?:\w+ )?(?:tell|say|see)|hard to (?:say|tell)|no way of knowing|who knows|beats me|not certain",
     orders={
-        Order.HOLD: "stop|halt|hold|hold position|hold it|freeze|pause|hover|stay|stay there|stop there|stop now",
+        Order.HOLD: "stop|stop it|halt|hold|hold position|hold it|freeze|pause|hover|stay|stay there|stop there|stop "
+            "now",
         Order.CONTINUE: "continue|carry on|resume|continue the mission|resume the mission",
         Order.RETURN: "return|come back|come home|return home|return to base|go home|fly back|fly home|rtl|come back "
             "now",

@@ -10,9 +10,9 @@ from mintpilot.core.geometry import Box
 from mintpilot.core.observation import OBJECT, PERSON, NameGuess, chance_of
 from mintpilot.core.semantic_map import MapObject
 
-LEAST = 0.02
+LEAST_CHANCE = 0.02
 """Of what is a person less probably than this nothing is counted."""
-MOST = 0.49
+MOST_CHANCE = 0.49
 """Parts together make a question, never a person."""
 TOUCH_M, LONGEST_M = 0.15, 2.1
 """Parts of one body are no further apart, and together no longer."""
@@ -20,7 +20,7 @@ TOUCH_M, LONGEST_M = 0.15, 2.1
 
 def with_parts_counted(objects: Sequence[MapObject]) -> tuple[MapObject, ...]:
     """The objects, of which the largest of each group of possible parts of a body is a person as probably as any is."""
-    parts = [o for o in objects if o.label == OBJECT and chance_of(o.names, PERSON) >= LEAST]
+    parts = [o for o in objects if o.label == OBJECT and chance_of(o.names, PERSON) >= LEAST_CHANCE]
     changed: dict[str, MapObject] = {}
     left = sorted(parts, key=lambda o: (-math.prod(o.box_m.size_m), o.id))
     while left:
@@ -34,7 +34,7 @@ def with_parts_counted(objects: Sequence[MapObject]) -> tuple[MapObject, ...]:
                 box = whole
         if len(group) > 1:
             chance = 1.0 - math.prod(1.0 - chance_of(o.names, PERSON) for o in group)
-            changed[group[0].id] = _as_person(group[0], min(MOST, chance))
+            changed[group[0].id] = _as_person(group[0], min(MOST_CHANCE, chance))
     return tuple(changed.get(o.id, o) for o in objects)
 
 

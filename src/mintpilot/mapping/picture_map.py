@@ -6,13 +6,16 @@ import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
-from PIL import Image, UnidentifiedImageError
 
 from mintpilot.core.errors import LimitError, MapError
 from mintpilot.mapping.map_file import check_file
+
+if TYPE_CHECKING:
+    from PIL import Image
 
 MAX_CELLS = 260_000_000
 """Cells of a map file, at most, that are read: 3 bytes of memory each, 7 for coloured pictures."""
@@ -61,6 +64,8 @@ def read_picture(path: Path, look_up: LookUp, *, hidden: int) -> NDArray[np.uint
         MapError: the file is missing, unreadable, truncated, no picture, or one of another format.
         LimitError: it has more than `MAX_CELLS` pixels.
     """
+    from PIL import Image, UnidentifiedImageError
+
     check_file(path, MAX_BYTES, "picture")
     try:
         _refuse_lossy(path)
@@ -78,6 +83,8 @@ def read_picture(path: Path, look_up: LookUp, *, hidden: int) -> NDArray[np.uint
 @contextmanager
 def _any_size() -> Iterator[None]:
     """Lets Pillow open pictures of any size: `check_size` bounds it."""
+    from PIL import Image
+
     before = Image.MAX_IMAGE_PIXELS
     try:
         with warnings.catch_warnings():

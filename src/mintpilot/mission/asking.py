@@ -197,14 +197,17 @@ def _late(t: Transition, event: Answered) -> None:
     if query is None or t.state.beliefs is None or event.answer.part is None:
         t.note("late-answer", f"'{said}' came when nothing was asked; it changed nothing.")
         return
-    before = t.beliefs
-    after = _after_late(before, query, event.answer, event.answer.part, t)
-    if enlarges(before, after, t.state.setup.mission.asking):
+    before, settings = t.beliefs, t.state.setup.mission.asking
+    after, against = _after_late(before, query, event.answer, event.answer.part, t)
+    if enlarges(before, after, settings):
         t.note("late-answer", f"'{said}' came too late; it would have taken caution away, and was ignored.")
         return
+    is_same = permissions(after, settings) == permissions(before, settings)
+    if against and is_same:
+        t.note("late-answer", f"'{said}' came too late; it goes against what was said before, and was ignored.")
+        return
     t.set(beliefs=replace(after, silent=False))
-    settings = t.state.setup.mission.asking
-    if permissions(after, settings) == permissions(before, settings):
+    if is_same:
         t.note("late-answer", f"'{said}' came late and was taken over.")
         return
     t.note("late-answer", f"'{said}' came late; it adds caution: the drone stops and deliberates again.")
@@ -215,10 +218,13 @@ def _late(t: Transition, event: Answered) -> None:
         t.brake()
 
 
-def _after_late(before: BeliefState, query: Query, answer: Answer, part: int, t: Transition) -> BeliefState:
+def _after_late(
+    before: BeliefState, query: Query, answer: Answer, part: int, t: Transition
+) -> tuple[BeliefState, bool]:
+    """What a late answer would make of the beliefs, and whether it goes against them: then all it spoke of is open."""
     settings = t.state.setup.mission.asking
     result = update(before, query, answer, settings)
     held = {gap.id for gap in before.belief.gaps}
     if not result.contradiction and set(query.gap_ids) <= held:
-        return result.state
-    return revoke(before, query, part)
+        return result.state, False
+    return revoke(before, query, part), result.contradiction

@@ -17,7 +17,9 @@ from mintpilot.reasoning.belief import condition
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Grant:
-    """An explicit yes for a region: it covers what was shown, for as long as answers count (method, section 12)."""
+    """An explicit yes for a region, or a look that saw it passable: it covers what was shown, for as long as answers
+    count (method, section 12).
+    """
 
     gap: str
     """Id of the obstacle gap."""
@@ -39,7 +41,8 @@ class BeliefState:
     confirmed: frozenset[str] = frozenset()
     """Obstacle gaps that got an explicit yes."""
     grants: tuple[Grant, ...] = ()
-    """Of each of these: the outline that was shown, and when the yes came; sorted by gap, none twice."""
+    """Of each of these, and of regions that were looked at: the outline that was shown, and when the yes came; sorted
+    by gap, none twice."""
     withdrawn: frozenset[str] = frozenset()
     """What is not asked again: what the operator does not know (`mintpilot.core.query.topics`, and target gaps of which
     two attributes were not known), and queries whose answers contradicted twice."""

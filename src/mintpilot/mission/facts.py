@@ -116,13 +116,17 @@ def not_looked_into(rooms: frozenset[str], finished: frozenset[str]) -> frozense
     return frozenset(room for room in rooms if look_id(room) not in finished)
 
 
-def words_for(fact: Fact, map: SemanticMap | None) -> str:
-    """What a fact speaks of, as it is called on the map; empty for a drawn region."""
+def words_for(fact: Fact, beliefs: BeliefState | None) -> str:
+    """What a fact speaks of, as questions call it, or the map does; empty for a drawn region."""
     if isinstance(fact, KeepOut):
         return ""
     name = subject_of(fact)
-    if map is None:
+    if beliefs is None:
         return name
+    asked = {gap.subject: gap.description for gap in beliefs.belief.gaps if gap.kind is not GapKind.TARGET}
+    if asked.get(name):
+        return asked[name]
+    map = beliefs.map
     places: tuple[Region | Room, ...] = (*map.regions, *map.rooms)
     known = {one.id: one.description for one in places} | {thing.id: thing.label for thing in map.objects}
     return known.get(name) or name

@@ -24,12 +24,12 @@ MARGIN_VOXELS = 1
 
 
 def granted(state: BeliefState, gaps: Collection[str], shown: SemanticMap, now_s: float) -> BeliefState:
-    """The state after an explicit yes for these obstacle gaps.
+    """The state after an explicit yes for these obstacle gaps, or after a look that saw them passable.
 
     Args:
-        state: with the gaps among ``confirmed``.
+        state: with the gaps among ``confirmed``, or known to be passable on its map.
         gaps: ids of obstacle gaps.
-        shown: the map of which the question spoke.
+        shown: the map of which the question spoke, or that the look drew.
         now_s: mission clock.
     """
     outlines = {obstacle_id(region.id): region.cells for region in shown.regions}

@@ -53,7 +53,7 @@ def fly_mission(components: MissionComponents) -> Verdict:
                     case Move() | Brake():
                         events.extend(shell.fly(directive))
                     case BeginTask():
-                        shell.begin_task()
+                        events.extend(shell.begin_task())
                     case Note() | Finish():
                         pass  # the journal keeps them
         verdict = shell.verdict(state)

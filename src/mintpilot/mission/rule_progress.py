@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from mintpilot.core.geometry import Floats
 from mintpilot.core.plan import Stop, VehicleLimits
 from mintpilot.core.rule import Ruling
 from mintpilot.core.semantic_map import SemanticMap
 from mintpilot.core.task import Task
-from mintpilot.planning.rule_labels import RuleGrid
+from mintpilot.planning.rule_letters import letters_along
 from mintpilot.rules.compiling import compile_rules
 from mintpilot.uncertainty import letters_of, ruling_of
 
@@ -37,12 +37,8 @@ def flown(task: Task, progress: RuleProgress, map: SemanticMap, limits: VehicleL
     rules = ruling(task, progress, map)
     if rules is None or not len(way_m):
         return progress
-    grid = RuleGrid(ruling=rules, map=map, limits=limits)
-    states = progress.states
-    for kind in grid.kinds_along(way_m):
-        yes, may = grid.labels[kind]
-        states = rules.automaton.after(states, yes | progress.held, may | progress.held)
-    return RuleProgress(states=states, held=progress.held)
+    letters = letters_along(rules, map, limits, way_m, spare_m=0.0)
+    return replace(progress, states=rules.automaton.followed(progress.states, letters, progress.held))
 
 
 def done(
@@ -52,11 +48,9 @@ def done(
     rules = ruling(task, progress, map)
     if rules is None:
         return progress
-    grid = RuleGrid(ruling=rules, map=map, limits=limits)
-    letters = letters_of(stop, map, task, rules.automaton)
-    kind = grid.kinds_along(at_m[None])[0]
-    yes, may = grid.labels[kind]
-    states, held = progress.states, progress.held
-    for held_now in (held | letters.at, ((held | letters.begins) & ~letters.ends) | letters.at):
-        states = rules.automaton.after(states, yes | held_now, may | held_now)
-    return RuleProgress(states=states, held=(held | letters.begins) & ~letters.ends)
+    stay = letters_along(rules, map, limits, at_m[None], spare_m=0.0)
+    stop_letters = letters_of(stop, map, task, rules.automaton, seen_from_m=at_m)
+    states = progress.states
+    for now in stop_letters.moments(progress.held):
+        states = rules.automaton.followed(states, stay, now)
+    return RuleProgress(states=states, held=stop_letters.after(progress.held))

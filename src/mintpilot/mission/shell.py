@@ -137,11 +137,16 @@ class Shell:
                 case Tell():
                     operator.tell(directive.text)
 
-    def begin_task(self) -> None:
-        """The survey is over."""
+    def begin_task(self) -> list[Input]:
+        """The survey is over. The vehicle's battery may be another one now: how it stands is said at once."""
         self._parts.begin_task()
         self._parts.recorder.record(Timed(stage="survey", seconds=time.perf_counter() - self._begun))
         self._flying_s = 0.0
+        try:
+            vehicle = self._parts.vehicle.state()
+        except DeviceError as error:
+            return [self._telemetry_lost(error)]
+        return [Ticked(time_s=self._now_s, vehicle=vehicle)]
 
     def verdict(self, state: MissionState) -> Verdict:
         """How it really went where somebody can tell, else how the mission believes that it went."""
@@ -154,11 +159,10 @@ class Shell:
             if believed.outcome not in (Outcome.SUCCESS, Outcome.PARTIAL):
                 return believed
             failure = judge.final()
+            missed = failure.outcome in (Outcome.PERSON_MISSED, Outcome.NOT_REACHED)
             unseen = any(look.result is Sight.UNSEEN for look in believed.looks)
-            if unseen and failure.outcome is Outcome.SUCCESS:
-                return believed
-            if believed.outcome is Outcome.PARTIAL and failure.outcome in (Outcome.PERSON_MISSED, Outcome.NOT_REACHED):
-                return believed
+            if believed.outcome is Outcome.PARTIAL and (missed or unseen or state.lacks_wanted):
+                return believed  # the judge of people and things does not know of every place that was asked for
         return replace(
             failure, achieved=believed.achieved, left=believed.left, looks=believed.looks, waiting=believed.waiting
         )

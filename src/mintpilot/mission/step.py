@@ -41,6 +41,7 @@ from mintpilot.core.trajectory import VehicleState
 from mintpilot.mission import asking, clearing, flying, meanwhile, ordering, surveying, telling
 from mintpilot.mission.belief_state import BeliefState
 from mintpilot.mission.directives import Directive
+from mintpilot.mission.grants import granted
 from mintpilot.mission.path_monitor import with_passable
 from mintpilot.mission.requests import Purpose
 from mintpilot.mission.rule_progress import flown
@@ -157,9 +158,10 @@ def _proceed_without_map(t: Transition) -> None:
 def _tick(t: Transition, event: Ticked) -> None:
     if event.vehicle is not None:
         t.set(vehicle=event.vehicle, ready=t.state.task_begun_s is not None)
-    question, request = t.state.question, t.state.request
+    question = t.state.question
     if question is not None and t.state.clock_s >= question.deadline_s:
         clearing.unanswered(t) if t.state.grounded else asking.unanswered(t)
+    request = t.state.request  # what was worked out for that question has ended with it
     if request is not None and t.state.clock_s >= request.deadline_s:
         _without_decision(t, request, "the deliberation is overdue")
     if t.state.beliefs is not None:
@@ -173,7 +175,8 @@ def _observed(t: Transition, event: MapObserved) -> None:
         known = frozenset(obstacle_id(r.id) for r in map.regions if r.passable is Knowledge.YES)
         t.set(beliefs=BeliefState(map=map, belief=prior_belief(())), known_passable=known)
     else:
-        t.set(beliefs=replace(beliefs, map=map), known_passable=t.state.known_passable | _seen_passable(t, event))
+        seen = _seen_passable(t, event)  # like a yes: it covers the outline that was seen, and ages
+        t.set(beliefs=granted(replace(beliefs, map=map), seen, map, t.state.clock_s))
         asking.check_permissions(t)
     match t.state.activity:
         case Activity.FIRST_LOOK:

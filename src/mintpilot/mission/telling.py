@@ -48,7 +48,7 @@ def told(t: Transition, event: FactTold) -> None:
     known = ToldFact(
         id=f"{PREFIX}{t.next_id()}",
         fact=event.fact,
-        words=facts.words_for(event.fact, beliefs.map if beliefs is not None else None),
+        words=facts.words_for(event.fact, beliefs),
         operator=event.operator,
         told_s=t.state.clock_s,
         standing=Standing.COUNTS,
@@ -61,7 +61,8 @@ def told(t: Transition, event: FactTold) -> None:
     if isinstance(found, str):
         _keep(t, _refused(known, found))
     elif isinstance(event.fact, _FREEING) or enlarges(beliefs, found.beliefs, mission.asking):
-        _keep(t, Telling(known=replace(known, standing=Standing.READ_BACK), shown=beliefs.map))
+        read_back = replace(known, standing=Standing.READ_BACK)
+        _keep(t, Telling(known=read_back, shown=beliefs.map, read_back_s=t.state.clock_s))
     else:
         _keep(t, Telling(known=known, memory=found.memory, counts_s=t.state.clock_s))
         _take_over(t, found.beliefs)
@@ -70,14 +71,18 @@ def told(t: Transition, event: FactTold) -> None:
 def _too_many(state: MissionState, fact: Fact) -> bool:
     if len(state.told) < MOST_TOLD:
         return False
-    counting = [one for one in state.told if one.known.standing is Standing.COUNTS]
-    return isinstance(fact, _FREEING) or sum(not isinstance(o.known.fact, _FREEING) for o in counting) >= MOST_TOLD
+    cautious = sum(one.known.counts and not isinstance(one.known.fact, _FREEING) for one in state.told)
+    return isinstance(fact, _FREEING) or cautious >= MOST_TOLD
 
 
 def confirmed(t: Transition, event: FactConfirmed) -> None:
-    """What was read back counts now."""
+    """What was read back counts now, or does not any more."""
     telling = _find(t.state, event.told)
-    if telling is None or telling.known.standing is not Standing.READ_BACK or telling.shown is None:
+    if telling is None:
+        return
+    if telling.known.standing is Standing.UNDO_READ_BACK:
+        _take_back(t, telling, event.operator)
+    if telling.known.standing is not Standing.READ_BACK or telling.shown is None:
         return
     mission = t.state.setup.mission
     found = facts.apply(telling.known.fact, t.beliefs, telling.shown, mission, t.state.clock_s)
@@ -90,13 +95,42 @@ def confirmed(t: Transition, event: FactConfirmed) -> None:
 
 
 def undone(t: Transition, event: FactUndone) -> None:
-    """Takes a fact back: what was before it is so again."""
+    """Takes a fact back at once, where that takes no caution away; else reads that back. Denies what is read back."""
     telling = _find(t.state, event.told)
-    if telling is None or telling.known.standing not in (Standing.READ_BACK, Standing.COUNTS):
+    if telling is None:
         return
-    _replace(t, Telling(known=replace(telling.known, standing=Standing.UNDONE)), by=event.operator)
-    if telling.known.standing is Standing.COUNTS and t.state.beliefs is not None:
+    match telling.known.standing:
+        case Standing.READ_BACK:
+            _replace(t, Telling(known=replace(telling.known, standing=Standing.UNDONE)), by=event.operator)
+        case Standing.UNDO_READ_BACK:
+            _replace(t, _stands(telling), by=event.operator)
+        case Standing.COUNTS if _guards(t, telling):
+            known = replace(telling.known, standing=Standing.UNDO_READ_BACK)
+            _replace(t, replace(telling, known=known, read_back_s=t.state.clock_s), by=event.operator)
+        case Standing.COUNTS:
+            _take_back(t, telling, event.operator)
+        case _:
+            pass
+
+
+def _guards(t: Transition, telling: Telling) -> bool:
+    """Whether something may be done without the fact that may not be done with it."""
+    fact, beliefs = telling.known.fact, t.state.beliefs
+    if not isinstance(fact, _FREEING) or beliefs is None:
+        return not isinstance(fact, _FREEING)
+    return enlarges(beliefs, facts.take_back(fact, beliefs, telling.memory), t.state.setup.mission.asking)
+
+
+def _take_back(t: Transition, telling: Telling, by: str) -> None:
+    """What was before the fact is so again."""
+    _replace(t, Telling(known=replace(telling.known, standing=Standing.UNDONE)), by=by)
+    if t.state.beliefs is not None:
         _take_over(t, facts.take_back(telling.known.fact, t.state.beliefs, telling.memory))
+
+
+def _stands(telling: Telling) -> Telling:
+    """It counts on: nobody confirmed that it is taken back."""
+    return replace(telling, known=replace(telling.known, standing=Standing.COUNTS))
 
 
 def on_map(map: SemanticMap, state: MissionState) -> SemanticMap:
@@ -105,10 +139,10 @@ def on_map(map: SemanticMap, state: MissionState) -> SemanticMap:
     searched, not_searched = set[str](), set[str]()
     finished = state.beliefs.finished if state.beliefs is not None else frozenset[str]()
     for telling in state.told:
-        fact, counts = telling.known.fact, telling.known.standing is Standing.COUNTS
+        fact, counts = telling.known.fact, telling.known.counts
         if isinstance(fact, KeepOut) and counts:
             drawn.append((telling.known.id, fact))
-        elif isinstance(fact, RoomSearched) and telling.known.standing in (Standing.COUNTS, Standing.UNDONE):
+        elif isinstance(fact, RoomSearched) and (counts or telling.known.standing is Standing.UNDONE):
             (searched if counts else not_searched).add(fact.room)
     rooms = frozenset(not_searched - searched)
     map = facts.with_searched(map, frozenset(searched), facts.not_looked_into(rooms, finished))
@@ -116,12 +150,13 @@ def on_map(map: SemanticMap, state: MissionState) -> SemanticMap:
 
 
 def lapse(t: Transition) -> None:
-    """What was not confirmed in time is undone; a yes for a region ages, or somebody has said no since."""
+    """What was not confirmed in time stays as it was; a yes for a region ages, or somebody has said no since."""
     grants = {} if t.state.beliefs is None else {grant.gap: grant.given_s for grant in t.state.beliefs.grants}
     for telling in t.state.told:
         known = telling.known
-        if known.standing is Standing.READ_BACK and t.state.clock_s >= known.told_s + READ_BACK_S:
-            _replace(t, Telling(known=replace(known, standing=Standing.UNDONE)))
+        if known.read_back and t.state.clock_s >= telling.read_back_s + READ_BACK_S:
+            is_new = known.standing is Standing.READ_BACK
+            _replace(t, Telling(known=replace(known, standing=Standing.UNDONE)) if is_new else _stands(telling))
         elif isinstance(known.fact, RegionPassable) and telling.memory is not None:
             holds = grants.get(telling.memory.gap) == telling.counts_s
             standing = Standing.COUNTS if holds else Standing.LAPSED
@@ -148,8 +183,12 @@ def _keep(t: Transition, telling: Telling) -> None:
 
 
 def _replace(t: Transition, telling: Telling, *, by: str = "") -> None:
+    before = _find(t.state, telling.known.id)
     t.set(told=tuple(telling if one.known.id == telling.known.id else one for one in t.state.told))
-    _note(t, telling, by)
+    if before is not None and before.known.standing is Standing.UNDO_READ_BACK and telling.known.counts:
+        t.note("told", f"Stays: {_in_words(telling.known.fact, telling.known.words)}{f' ({by})' if by else ''}.")
+    else:
+        _note(t, telling, by)
 
 
 def _note(t: Transition, telling: Telling, by: str) -> None:
@@ -161,6 +200,8 @@ def _note(t: Transition, telling: Telling, by: str) -> None:
         case Standing.COUNTS:
             t.note("told", f"Told: {what}{who}.")
             t.tell(f"I take over: {what}.")
+        case Standing.UNDO_READ_BACK:
+            t.note("told", f"Read back: that it is taken back: {what}{who}.")
         case Standing.UNDONE:
             t.note("told", f"Taken back: {what}{who}.")
             t.tell(f"I take back: {what}.")

@@ -71,7 +71,7 @@ def with_search(
     )
     looks = tuple(
         Stop(
-            id=look_id(zone.id, 1 + _looks(zone.id, finished)),
+            id=search_stop_id(zone.id, 1 + _looks(zone.id, finished)),
             action=Action.LOOK,
             sites=(Site(position_m=zone.viewpoint_m, reach_m=LOOK_REACH_M, value=zone.id, label=zone.id),),
             gap=SEARCH,
@@ -115,7 +115,7 @@ def unseen_zones(
     return tuple(zones)
 
 
-def look_id(zone: str, number: int) -> str:
+def search_stop_id(zone: str, number: int) -> str:
     """Id of the stop at which it is looked around in a zone for that time, from 1 on."""
     return f"look:{zone}:{number}"
 

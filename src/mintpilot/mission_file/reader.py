@@ -33,7 +33,7 @@ class Problem:
     file: str
     """The file as it was named."""
     line: int
-    """Line in it, from 1."""
+    """Line in it, from 1; 0 for contents that no file holds."""
     path: str
     """Where in the mission, e.g. ``world.regions[0].prior_passable``; empty for the file as a whole."""
     message: str
@@ -42,7 +42,8 @@ class Problem:
     @property
     def place(self) -> str:
         """``FILE:LINE (path.to.key)``."""
-        return f"{self.file}:{self.line}" + (f" ({self.path})" if self.path else "")
+        where = f"{self.file}:{self.line}" if self.line else self.file
+        return where + (f" ({self.path})" if self.path else "")
 
     def __str__(self) -> str:
         return f"{self.place}: {self.message}"
@@ -69,15 +70,48 @@ def read_mission(path: str | Path) -> MissionFile:
     Raises:
         MissionFileError: the file cannot be read or has mistakes; all of them are in the message and in ``problems``.
     """
-    mission, problems = _read(Path(path))
-    if mission is None or problems:
+    mission, problems = read_or_find_problems(path)
+    if mission is None:
         raise MissionFileError(problems)
     return mission
 
 
+def check_contents(mission: MissionFile, base: Path) -> None:
+    """Checks a mission that was made by a program as one that is read from a file is.
+
+    Args:
+        mission: of correct form.
+        base: folder that file names in it are relative to.
+
+    Raises:
+        MissionFileError: it has mistakes; all of them are in the message and in ``problems``.
+    """
+    name = f"mission '{mission.name}'"
+    problems = [
+        Problem(file=name, line=0, path=path_text(fault.path), message=fault.message)
+        for fault in contradictions(mission, base)
+    ]
+    if problems:
+        raise MissionFileError(problems)
+
+
 def find_problems(path: str | Path) -> list[Problem]:
     """Every mistake in that mission file, in the order of its lines; empty when it is sound."""
-    return _read(Path(path))[1]
+    return read_or_find_problems(path)[1]
+
+
+def read_or_find_problems(path: str | Path) -> tuple[MissionFile | None, list[Problem]]:
+    """The mission in that file, or None with every mistake in it."""
+    file = Path(path)
+    if file.suffix in SUFFIXES:
+        return None, _placed([refused_as_mission(file)], Document(), file)
+    document = read_document(file)
+    mission, faults = None, document.faults
+    if not faults:
+        mission, faults = _formed(document, file.parent)
+    if mission is not None:
+        faults = list(contradictions(mission, file.parent))
+    return (None if faults else mission), _placed(faults, document, file)
 
 
 def place_problems(path: str | Path, mistakes: Sequence[tuple[Place, str]]) -> list[Problem]:
@@ -105,18 +139,6 @@ def json_schema() -> str:
 def path_text(path: Path_) -> str:
     """``("regions", 0, "id")`` as ``regions[0].id``."""
     return "".join(f"[{step}]" if isinstance(step, int) else f".{step}" for step in path).lstrip(".")
-
-
-def _read(path: Path) -> tuple[MissionFile | None, list[Problem]]:
-    if path.suffix in SUFFIXES:
-        return None, _placed([refused_as_mission(path)], Document(), path)
-    document = read_document(path)
-    mission, faults = None, document.faults
-    if not faults:
-        mission, faults = _formed(document, path.parent)
-    if mission is not None:
-        faults = list(contradictions(mission, path.parent))
-    return mission, _placed(faults, document, path)
 
 
 def _formed(document: Document, base: Path) -> tuple[MissionFile | None, list[Fault]]:

@@ -245,26 +245,28 @@ class MissionFile(Spec):
     """What every flight keeps from take-off to its end. Hard: where a rule cannot be kept, stops are left undone."""
     looks: Several[LookSpec] = ()
     """From where regions can be looked at: a look competes with questions by what it tells a second
-    (`asking.reply_s`). On given maps and with the kinematic simulator; a camera sees by itself."""
+    (`asking.reply_s`). What it sees counts as a yes does: for the outline that it saw, for `answer_valid_s`. Only the
+    kinematic simulator settles looks, where it knows how things truly are; elsewhere they are left out, and that is
+    said."""
     people_price_s: NotNegative | None = None
     """What leaving somebody unseen costs, seconds of flight; default: `asking.failure_price_s`."""
-    vehicle: VehicleSpec = VehicleSpec()
+    vehicle: VehicleSpec = VehicleSpec.model_construct()
     """What the vehicle can do."""
-    asking: AskingSpec = AskingSpec()
+    asking: AskingSpec = AskingSpec.model_construct()
     """When to ask, and when to stop."""
-    language: LanguageSpec = LanguageSpec()
+    language: LanguageSpec = LanguageSpec.model_construct()
     """In which language it asks, and with what language model, if any."""
-    perception: PerceptionSpec = PerceptionSpec()
+    perception: PerceptionSpec = PerceptionSpec.model_construct()
     """What makes objects of pictures, where the mission is flown with a camera."""
     survey: SurveySpec | None = None
     """The flight that makes the map; not for worlds given as a map."""
-    priors: PriorsSpec = PriorsSpec()
+    priors: PriorsSpec = PriorsSpec.model_construct()
     """For regions and rooms that name none."""
     values: Several[ValueSpec] = ()
     """Ordered values of regions of a given map: how wide a passage is, how high smoke hangs."""
     correlations: Several[CorrelationSpec] = ()
     """Gaps whose priors do not multiply."""
-    operator: OperatorSpec = OperatorSpec()
+    operator: OperatorSpec = OperatorSpec.model_construct()
     """How a scripted operator behaves."""
     truth: dict[str, str] = Field(default_factory=dict)
     """What a scripted operator knows: id of a region or room, or a phrase, to its true value."""

@@ -2,10 +2,16 @@
 
 from __future__ import annotations
 
+import ast
+import inspect
+import textwrap
 from collections.abc import Mapping
+from itertools import pairwise
 from typing import Annotated, Any, Literal, TypeAlias, TypeVar
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSchema
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, GetJsonSchemaHandler, WithJsonSchema
+from pydantic.json_schema import JsonSchemaValue
+from pydantic_core import CoreSchema
 
 from mintpilot.core.geometry import Box, Vec3
 from mintpilot.core.observation import Attribute
@@ -19,10 +25,30 @@ class Spec(BaseModel):
         strict=True,
         frozen=True,
         allow_inf_nan=False,
-        use_attribute_docstrings=True,
         title=None,
         defer_build=True,
     )
+
+    @classmethod
+    def __get_pydantic_json_schema__(cls, core_schema: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
+        """What is written below a field describes it: read from the source only where a schema is wanted."""
+        schema = handler(core_schema)
+        fields = handler.resolve_ref_schema(schema).get("properties", {})
+        for name, words in _described(cls).items():
+            fields[cls.model_fields[name].alias or name].setdefault("description", words)
+        return schema
+
+
+def _described(model: type[Spec]) -> dict[str, str]:
+    """The sentences below a model's own and inherited fields."""
+    found: dict[str, str] = {}
+    for one in reversed([kind for kind in model.__mro__ if issubclass(kind, Spec) and kind.__doc__]):
+        tree = ast.parse(textwrap.dedent(inspect.getsource(one)))
+        for field, words in pairwise(ast.walk(tree)):
+            match field, words:
+                case ast.AnnAssign(target=ast.Name(id=name)), ast.Expr(value=ast.Constant(value=str(text))):
+                    found[name] = inspect.cleandoc(text)
+    return found
 
 
 def _as_tuple(value: Any) -> Any:

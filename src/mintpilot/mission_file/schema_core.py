@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 from mintpilot.core.errors import MissionError
@@ -25,6 +26,9 @@ from mintpilot.mission_file.schema import GoalSpec, MissionFile
 from mintpilot.mission_file.schema_base import attributes_of, in_english, place_of
 from mintpilot.mission_file.schema_world import MapWorld
 
+PRICED_FLIGHTS = 10
+"""Where nothing else is said a failed mission counts for no less than so many flights across the map."""
+
 
 def mission_of(file: MissionFile, *, start_m: Vec3, volume: Box) -> Mission:
     """The mission, free of file formats. Start and volume are the world's."""
@@ -43,7 +47,7 @@ def mission_of(file: MissionFile, *, start_m: Vec3, volume: Box) -> Mission:
         start_m=start_m,
         volume=volume,
         limits=limits,
-        asking=asking_of(file),
+        asking=_priced(file, volume, limits),
         survey=None if isinstance(file.world, MapWorld) else SurveySettings(**survey),
         prior_passable=file.priors.passable,
         prior_occupied=file.priors.occupied,
@@ -75,6 +79,15 @@ def asking_of(file: MissionFile) -> AskingSettings:
     values = file.asking.model_dump(exclude={"strategy_arguments"})
     kinds: dict[str, Any] = {"rule": CriticalityRule, "while_waiting": WhileWaiting, "kinds": QueryKinds}
     return AskingSettings(**{name: kinds[name](value) if name in kinds else value for name, value in values.items()})
+
+
+def _priced(file: MissionFile, volume: Box, limits: VehicleLimits) -> AskingSettings:
+    """What failing counts for is never less than flying: nothing that was asked for is left for being far away."""
+    asking = asking_of(file)
+    if "failure_price_s" in file.asking.model_fields_set:
+        return asking
+    across_s = math.hypot(*volume.size_m) / limits.cruise_mps
+    return replace(asking, failure_price_s=max(asking.failure_price_s, PRICED_FLIGHTS * across_s))
 
 
 def correlations_of(file: MissionFile) -> tuple[CorrelationGroup, ...]:

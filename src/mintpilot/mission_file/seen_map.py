@@ -21,7 +21,7 @@ LARGEST = 64_000_000
 
 
 class _Form(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False, defer_build=True)
 
 
 class _BoxForm(_Form):

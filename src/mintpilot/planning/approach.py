@@ -8,6 +8,9 @@ from mintpilot.core.geometry import Bools, Ints
 from mintpilot.core.plan import Site
 from mintpilot.planning.terrain import Terrain, cells_around, distances_m, rays
 
+AT_ONCE = 32
+"""For so many cells at a time it is looked whether they see the site: most often one of the first ones does."""
+
 
 def approach_cell(terrain: Terrain, site: Site) -> Ints | None:
     """The cell (3,) from which a site is served; None where nothing within reach can be flown to.
@@ -35,10 +38,14 @@ def approach_cell(terrain: Terrain, site: Site) -> Ints | None:
             np.ravel_multi_index(tuple(cells.T), frame.shape),
             np.round(away, 9),
             terrain.open_cells[tuple(cells.T)],
-            ~sees(terrain, cells, site),
         )
     )
-    return np.asarray(cells[order[0]], np.int64)
+    cells = cells[order]
+    for first in range(0, len(cells), AT_ONCE):
+        seeing = sees(terrain, cells[first : first + AT_ONCE], site)
+        if seeing.any():
+            return np.asarray(cells[first + int(np.argmax(seeing))], np.int64)
+    return np.asarray(cells[0], np.int64)
 
 
 def sees(terrain: Terrain, cells: Ints, site: Site) -> Bools:

@@ -1,9 +1,10 @@
 """The truth of spatial propositions on the grid, and the automaton of the rules laid over it (method, section 14).
 
-A proposition is known at a cell where it has one value along all straight ways between that cell's centre and those of
-its neighbours. Elsewhere it *may* hold, and a plan must keep the rules whichever it is, at every moment: the automaton
-is followed with the set of states that are possible. A flown way may pass a cell off such a straight way, by less than
-half a cell's diagonal: within that, labels of `touches` and `within` are not certain; the judge measures exactly.
+A proposition is known at a cell where it has one value on the half of each straight way to a neighbour that is nearer
+to that cell. Elsewhere it *may* hold, and a plan must keep the rules whichever it is, at every moment: the automaton is
+followed with the set of states that are possible. Where several propositions change on one such way, or a flown way
+leaves the straight ones, `mintpilot.planning.rule_letters` says exactly what holds: nothing is flown before that was
+looked at.
 """
 
 from __future__ import annotations
@@ -18,8 +19,8 @@ from mintpilot.core.plan import VehicleLimits
 from mintpilot.core.rule import About, Proposition, Ruling
 from mintpilot.core.semantic_map import SemanticMap
 from mintpilot.planning.flyable import squared_gaps
-
-_HALF = 0.5
+from mintpilot.planning.lattice import Lattice
+from mintpilot.planning.rule_letters import letters_along, piece_m
 
 
 @dataclass(slots=True, eq=False)
@@ -52,10 +53,17 @@ class RuleGrid:
                 sure, possible = spatial_truth(what, cells, self.map, self.limits)
                 yes |= sure.ravel().astype(np.int64) << bit
                 may |= (possible | sure).ravel().astype(np.int64) << bit
-        found, kinds = np.unique(np.stack([yes, may]), axis=1, return_inverse=True)
+        most = np.int64(1) << len(self.ruling.cells)
+        found, kinds = np.unique(yes * most + may, return_inverse=True)
         self.kinds = kinds.ravel().astype(np.int64)
-        self.labels = tuple((int(a), int(b)) for a, b in found.T)
+        self.labels = tuple(divmod(int(both), int(most)) for both in found)
         self.sets, self._numbers, self._next = [], {}, {}
+
+    def over(self, lattice: Lattice) -> Ints:
+        """The label of each node of a lattice of that map; -1 for its rim."""
+        kinds = np.full(lattice.size, -1, np.int64)
+        kinds[lattice.nodes_of_flat(np.arange(self.map.frame.size))] = self.kinds
+        return kinds
 
     def number(self, states: frozenset[int]) -> int:
         """Number of a set of states; -1 where a rule may be broken for good."""
@@ -72,8 +80,7 @@ class RuleGrid:
             return -1
         key = (number, kind, held)
         if key not in self._next:
-            yes, may = self.labels[kind]
-            self._next[key] = self.number(self.ruling.automaton.after(self.sets[number], yes | held, may | held))
+            self._next[key] = self._followed(number, [self.labels[kind]], held)
         return self._next[key]
 
     def table(self, start: int, held: int) -> tuple[Ints, Ints]:
@@ -86,57 +93,59 @@ class RuleGrid:
         index = {number: i for i, number in enumerate(order)} | {-1: -1}
         return np.array(order, np.int64), np.array([[index[s] for s in row] for row in rows], np.int64)
 
-    def kinds_along(self, way_m: Floats) -> list[int]:
-        """The labels that a way (n, 3), metres, passes, one after another, each once in a row."""
-        cells = np.clip(self.map.frame.cells_of(way_m), 0, np.array(self.map.frame.shape) - 1)
-        kinds = self.kinds[np.ravel_multi_index(tuple(cells.T), self.map.frame.shape)]
-        return [int(k) for k in kinds[np.concatenate([[True], np.diff(kinds) != 0])]]
-
-    def flown(self, number: int, way_m: Floats, held: int) -> int:
-        """The set after a way (n, 3) in metres, of points no further apart than half a cell."""
-        for kind in self.kinds_along(way_m):
-            number = self.after(number, kind, held)
-        return number
-
     def followed(self, number: int, cells: Iterable[int], held: int) -> int:
-        """The set after a way over these flat cells."""
+        """The set after a way over these flat cells, from the middle of each straight to that of the next."""
         for kind in self.kinds[np.asarray(cells, np.int64)].tolist():
             number = self.after(number, kind, held)
         return number
 
+    def flown(self, number: int, way_m: Floats, held: int) -> int:
+        """The set after any way (n, 3), metres, from which the vehicle keeps its margin."""
+        if number < 0:
+            return -1
+        letters = letters_along(self.ruling, self.map, self.limits, way_m, spare_m=self.limits.margin_m)
+        return self._followed(number, letters, held)
+
     def done(self, number: int, cell: int, stop_id: str, held: int) -> tuple[int, int]:
         """(set, propositions held) after a stop was done at that flat cell; the drone is still there."""
-        letters, kind = self.ruling.letters(stop_id), int(self.kinds[cell])
-        there = self.after(number, kind, held | letters.at)
-        held = (held | letters.begins) & ~letters.ends
-        return self.after(there, kind, held | letters.at), held
+        letters = self.ruling.letters(stop_id)
+        for now in letters.moments(held):
+            number = self.after(number, int(self.kinds[cell]), now)
+        return number, letters.after(held)
 
     def is_kept(self, number: int) -> bool:
         """Whether all rules are kept if the mission ends now."""
         return number >= 0 and all(self.ruling.automaton.accepting[s] for s in self.sets[number])
 
+    def _followed(self, number: int, letters: list[tuple[int, int]], held: int) -> int:
+        return self.number(self.ruling.automaton.followed(self.sets[number], letters, held))
+
 
 def spatial_truth(what: Proposition, cells: Ints, map: SemanticMap, limits: VehicleLimits) -> tuple[Bools, Bools]:
     """Where (nz, ny, nx) a proposition holds for certain, and where it may hold."""
     frame = map.frame
-    edge, diagonal = frame.resolution_m, frame.resolution_m * (2 if frame.is_flat else 3) ** 0.5
+    half_m = frame.resolution_m * (2 if frame.is_flat else 3) ** 0.5 / 2
     region = np.zeros(frame.size, bool)
     region[cells] = True
     region = region.reshape(frame.shape)
+    off_m = limits.clearance_m - limits.radius_m
+
+    def near(solid: Bools, metres: float) -> Bools:
+        return _near(solid, float(np.hypot(metres, half_m)) / frame.resolution_m)
+
     match what.about:
         case About.TOUCHES | About.WITHIN:
-            reach = limits.clearance_m + what.metres
-            near = _near(region, float(np.hypot(reach, diagonal * _HALF)) / edge) if region.any() else region
-            bodily = what.metres + limits.radius_m >= diagonal * _HALF
-            return (region if bodily else np.zeros_like(region)), near | region
+            bodily = what.metres + limits.radius_m - off_m > piece_m(frame, limits)
+            return (region if bodily else np.zeros_like(region)), near(region, limits.clearance_m + what.metres)
         case About.IN:
-            return region & ~_near(~region, diagonal * _HALF / edge), region | _near(region, diagonal * _HALF / edge)
+            return region & ~near(~region, off_m), near(region, off_m)
         case _:
-            keep = float(np.hypot(limits.clearance_m, diagonal * _HALF))
-            return region & ~_near(~region, keep / edge), region | _near(region, diagonal * _HALF / edge)
+            return region & ~near(~region, limits.clearance_m), near(region, off_m)
 
 
 def _near(solid: Bools, edges: float) -> Bools:
-    """Cells whose centre is nearer than that to the surface of a cell of the set, or in it."""
-    near: Bools = squared_gaps(solid, int(np.ceil(edges + _HALF))) < (2 * edges) ** 2 * (1 - 1e-9)
-    return near
+    """Cells of the set, and those whose centre is nearer than that to the surface of one."""
+    if not solid.any():
+        return solid
+    near: Bools = squared_gaps(solid, int(np.ceil(edges + 0.5))) < (2 * edges) ** 2 * (1 - 1e-9)
+    return near | solid

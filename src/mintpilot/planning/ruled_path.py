@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
-
 import numpy as np
 
 from mintpilot.core.errors import InfeasibleError
@@ -19,11 +17,21 @@ from mintpilot.planning.terrain import start_cell
 
 
 def keeps_rules(way_m: Floats, ruling: Ruling, map: SemanticMap, limits: VehicleLimits, *, as_along_m: Floats) -> bool:
-    """Whether a motion (n, 3) leaves the rules in no state in which the path (m, 3) would not leave them."""
+    """Whether a motion leaves the rules in no state in which the path would not leave them.
+
+    Args:
+        way_m: the motion (n, 3), metres.
+        ruling: the rules, and how far they have come.
+        map: what is known.
+        limits: size of the vehicle.
+        as_along_m: the path (m, 3), metres: from where the drone is to the middle of a cell, then from cell to cell.
+    """
     grid = RuleGrid(ruling=ruling, map=map, limits=limits)
     start = grid.number(ruling.states)
-    planned = grid.flown(start, _dense(as_along_m, map.frame.resolution_m / 2), ruling.held)
-    came = grid.flown(start, _dense(way_m, map.frame.resolution_m / 4), ruling.held)
+    cells = np.clip(map.frame.cells_of(as_along_m[1:]), 0, np.array(map.frame.shape) - 1)
+    planned = grid.flown(start, as_along_m[:2], ruling.held)
+    planned = grid.followed(planned, np.ravel_multi_index(tuple(cells.T), map.frame.shape), ruling.held)
+    came = grid.flown(start, way_m, ruling.held)
     return came >= 0 and planned >= 0 and grid.sets[came] <= grid.sets[planned]
 
 
@@ -42,28 +50,18 @@ def ruled_path(
     if not map.frame.contains(goal[None])[0] or not free[tuple(goal)]:
         return None
     grid, lattice = RuleGrid(ruling=ruling, map=map, limits=limits), lattice_of(free)
-    kinds = np.full(lattice.size, -1, np.int64)
-    kinds[lattice.nodes_of_flat(np.arange(map.frame.size))] = grid.kinds
     flat = int(np.ravel_multi_index(tuple(start), map.frame.shape))
-    begun = grid.after(grid.number(ruling.states), int(grid.kinds[flat]), ruling.held)
+    hop = np.vstack([np.asarray([start_m], float), map.frame.centres_of(start[None])])
+    begun = grid.followed(grid.flown(grid.number(ruling.states), hop, ruling.held), [flat], ruling.held)
     if begun < 0:
         return None
     sets, table = grid.table(begun, ruling.held)
-    ways = ways_from(lattice, lattice.allowed, lattice.node(start), sets, table, kinds, np.zeros(lattice.size))
+    ways = ways_from(
+        lattice, lattice.allowed, lattice.node(start), sets, table, grid.over(lattice), np.zeros(lattice.size)
+    )
     node = lattice.node(goal)
     ends = [(cost, state) for state, cost in ways.at(node) if grid.is_kept(int(sets[state]))]
     if not ends:
         return None
     cells = ways.path(node, min(ends)[1])
     return np.vstack([np.asarray([start_m], float), map.frame.centres_of(cells)])
-
-
-def _dense(way_m: Floats, apart_m: float) -> Floats:
-    """The way with points no further apart than that."""
-    if len(way_m) < 2:
-        return way_m
-    pieces = [
-        np.linspace(a, b, max(1, int(np.ceil(float(np.linalg.norm(b - a)) / apart_m))), endpoint=False)
-        for a, b in pairwise(way_m)
-    ]
-    return np.concatenate([*pieces, way_m[-1:]])

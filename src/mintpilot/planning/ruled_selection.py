@@ -72,10 +72,7 @@ class RuledSelector:
         terrain, problem = itinerary.terrain, itinerary.problem
         self._grid = RuleGrid(ruling=ruling, map=problem.map, limits=problem.limits)
         self._lattice = lattice_of(terrain.free)
-        every = np.arange(terrain.frame.size)
-        nodes = self._lattice.nodes_of_flat(every)
-        self._kinds = np.full(self._lattice.size, -1, np.int64)
-        self._kinds[nodes] = self._grid.kinds
+        self._kinds = self._grid.over(self._lattice)
         self._regions = tuple(self._lattice.nodes_of_flat(r) for r in terrain.regions)
         self._masks: Ints = np.zeros(terrain.frame.size, np.uint64)
         for bit, cells in enumerate(terrain.regions):
@@ -98,10 +95,12 @@ class RuledSelector:
         return self._searched(plain, values, (*self._itinerary.ordered, *visits), blocked, uncertain)
 
     def _begun(self) -> tuple[int, int]:
-        """Set of states and propositions held where the plan begins, its first cell counted."""
-        held = self._ruling.held
-        start = self._grid.number(self._ruling.states)
-        return self._grid.after(start, int(self._grid.kinds[self._flat(self._itinerary.start)]), held), held
+        """Set of states and propositions held in the middle of the plan's first cell."""
+        held, start = self._ruling.held, self._itinerary.start
+        middle = self._itinerary.terrain.frame.centres_of(np.array([start]))
+        hop = np.vstack([np.asarray([self._itinerary.problem.start_m], float), middle])
+        came = self._grid.flown(self._grid.number(self._ruling.states), hop, held)
+        return self._grid.followed(came, [self._flat(start)], held), held
 
     def _keeps(self, found: Selection) -> bool:
         """Whether a plan made without regard to rules keeps them, its way home included."""

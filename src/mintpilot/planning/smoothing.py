@@ -48,7 +48,7 @@ class Sight:
         Twice: the second pass starts from points closer together, so that corners need not be way-points of the path.
         """
         once = path_m[self._farthest_visible(path_m)]
-        dense = _densified(once, min(self._near.frame.resolution_m / 2, SPACING_M))
+        dense = densified(once, min(self._near.frame.resolution_m / 2, SPACING_M))
         return np.asarray(dense[self._farthest_visible(dense)])
 
     def _farthest_visible(self, points_m: Floats) -> Ints:
@@ -77,7 +77,8 @@ def heading(
     return np.asarray(_turn(wanted, start_rad, np.nan if end_rad is None else end_rad, step_s * rate_rad_s))
 
 
-def _densified(points_m: Floats, spacing_m: float) -> Floats:
+def densified(points_m: Floats, spacing_m: float) -> Floats:
+    """The polyline (n, 3), n at least 1, with points no further apart than that, metres."""
     parts = [points_m[:1]]
     for a, b in pairwise(points_m):
         count = max(1, int(np.ceil(np.linalg.norm(b - a) / spacing_m)))

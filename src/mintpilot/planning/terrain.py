@@ -111,13 +111,14 @@ def start_cell(
     if len(cells):
         centres = frame.centres_of(cells)
         here = np.asarray(start_m, float)
-        near = surroundings(map, np.vstack([here, centres]), limits.clearance_m, passable=passable)
         order = np.lexsort(
             (np.ravel_multi_index(tuple(cells.T), frame.shape), np.round(away, 9), np.any(cells != own, axis=1))
         )
-        for i in order:
-            if first_breach(np.stack([here, centres[i]]), near)[1] < 0:
-                return np.asarray(cells[i], np.int64)
+        for tried in (order[:1], order[1:]):  # most often the first will do, and little has to be looked at around it
+            near = surroundings(map, np.vstack([here, centres[tried]]), limits.clearance_m, passable=passable)
+            for i in tried:
+                if first_breach(np.stack([here, centres[i]]), near)[1] < 0:
+                    return np.asarray(cells[i], np.int64)
     raise InfeasibleError(
         f"start ({start_m[0]:.2f}, {start_m[1]:.2f}, {start_m[2]:.2f}) is not in flyable space, and no flyable cell is "
         f"within {reach_m:.2g} m straight through free space; start from elsewhere, or reduce the vehicle's radius or "

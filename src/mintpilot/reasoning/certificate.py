@@ -99,5 +99,8 @@ def _consequence(plan: Plan | None, bound: float, outside: float, delta_c_s: flo
         return f"The plan of {plan.cost_s:.1f} s is the best that is safe; {beyond}."
     if bound > delta_c_s + TOLERANCE:
         return f"The plan of {plan.cost_s:.1f} s is at most {bound:.1f} s dearer than the best; {beyond}."
-    undone = f" It leaves undone: {len(plan.leaves_undone)}." if plan.leaves_undone else ""
-    return f"No further answer would change the flight of {plan.cost_s:.1f} s by more than {bound:.1f} s.{undone}"
+    text = f"No further answer would change the flight of {plan.cost_s:.1f} s by more than {bound:.1f} s."
+    if not plan.leaves_undone:
+        return text
+    left = "; ".join(f"{one.stop.text or one.stop.id} ({one.reason})" for one in plan.leaves_undone)
+    return f"{text} It leaves undone: {left}."

@@ -29,7 +29,7 @@ MAX_CHARACTERS = 2000
 MAX_DEPTH = 64
 """So are those with more operators inside one another."""
 _TOKEN = re.compile(
-    r"\s*(?:(?P<atom>(?P<name>[A-Za-z_]+)\s*\((?P<inside>[^()]*)\))|(?P<word>[A-Za-z_]+)|(?P<sign>->|&&|\|\||=>|==|[^\s\w]))"
+    r"\s*(?:(?P<atom>(?P<name>(?![GFURX]\b)[A-Za-z_]+)\s*\((?P<inside>[^()]*)\))|(?P<word>[A-Za-z_]+)|(?P<sign>->|&&|\|\||=>|==|[^\s\w]))"
 )
 _MEANT = {
     "&&": "&", "||": "|", "=>": "->", "and": "&", "or": "|", "not": "!", "~": "!", "-": "->", "=": "->", "==": "->",
@@ -129,8 +129,9 @@ class _Reader:
             return TRUE if token == "true" else FALSE
         if match is None or match.group("atom") is None:
             raise self.fault("a proposition, '(', '!', 'G' or 'F'")
-        if match.group("name") in "GFUR" or match.group("name") in _MEANT or match.group("name") == "X":
-            return self._applied(match, depth)
+        if match.group("name") in _MEANT:
+            self.token = match.group("name")
+            raise self.fault("a proposition, '(', '!', 'G' or 'F'")
         atom = self._atom(match)
         self.advance()
         return atom
@@ -138,15 +139,6 @@ class _Reader:
     def _deeper(self, depth: int) -> None:
         if depth > MAX_DEPTH:
             raise MissionError(f"formula '{self._text[:40]}…' is nested deeper than {MAX_DEPTH}: split it into rules")
-
-    def _applied(self, match: re.Match[str], depth: int) -> Formula:
-        """``G(a)``: the sign alone, then what is in brackets."""
-        self.token = match.group("name")
-        self._next = self._at + len(self.token)
-        self._match = None
-        if self.token in ("G", "F"):
-            return self.unary(depth)
-        raise self.fault("a proposition, '(', '!', 'G' or 'F'")
 
     def _atom(self, match: re.Match[str]) -> Formula:
         name, inside = match.group("name"), [part.strip() for part in match.group("inside").split(",")]

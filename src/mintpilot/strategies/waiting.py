@@ -13,6 +13,9 @@ from mintpilot.reasoning.classes import cost_under
 from mintpilot.reasoning.waiting import in_time, longest_wait_s, spare_s
 from mintpilot.strategies.flying import best_safe_plan, cautious_plan, expected_cost_s, fly
 
+SOONEST_ANSWER_S = 0.5
+"""Nobody hears or reads a question and answers it sooner, seconds."""
+
 
 class CountsWaiting(Strategy):
     """Decides as another strategy does, but flies where no answer can be worth its waiting.
@@ -31,7 +34,8 @@ class CountsWaiting(Strategy):
             return decision
         safe = best_safe_plan(situation, decision.mint)
         now_s = _nothing_s(situation) if safe is None else expected_cost_s(situation, decision.mint, safe)
-        no_time = longest_wait_s(cautious_plan(situation), situation.problem.limits) <= 0 < situation.settings.reply_s
+        longest_s = longest_wait_s(cautious_plan(situation), situation.problem.limits)
+        no_time = longest_s < SOONEST_ANSWER_S and situation.settings.reply_s > 0
         if not no_time and waited_for_s(situation, decision.mint) <= now_s + TOLERANCE:
             return decision
         return fly(situation, decision.mint, safe, StopReason.WAITING, best_gain_bits=decision.scored.gain_bits)

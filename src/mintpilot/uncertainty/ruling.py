@@ -7,15 +7,18 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from mintpilot.core.geometry import Ints
+from mintpilot.core.geometry import Floats, Ints
+from mintpilot.core.observation import RegionKind
 from mintpilot.core.plan import Stop
 from mintpilot.core.rule import About, Automaton, Proposition, Ruling, StopLetters
-from mintpilot.core.semantic_map import SemanticMap
+from mintpilot.core.semantic_map import Cell, SemanticMap
 from mintpilot.core.task import Action, Task
 from mintpilot.uncertainty.gaps import LOOK_REACH_M, look_id
 from mintpilot.uncertainty.keep_away import around_box, box_of
 from mintpilot.uncertainty.things import things_of
 
+SIGHT_PER_CELL = 4
+"""A line of sight is looked at in so many places for each edge of a cell."""
 _TOUCHING_M = 1e-6
 
 
@@ -49,8 +52,19 @@ def ruling_of(
     )
 
 
-def letters_of(stop: Stop, map: SemanticMap, task: Task, automaton: Automaton) -> StopLetters:
-    """What doing a stop makes true and false."""
+def letters_of(
+    stop: Stop, map: SemanticMap, task: Task, automaton: Automaton, *, seen_from_m: Floats | None = None
+) -> StopLetters:
+    """What doing a stop makes true and false.
+
+    Args:
+        stop: what is done.
+        map: what is believed of the world.
+        task: whose stops and rules these are.
+        automaton: of these rules together.
+        seen_from_m: where it was done (3,), metres: a room that cannot be seen from there was not looked into. None: it
+            is still to be done, and hoped to be seen.
+    """
     at = begins = ends = 0
     for bit, what in enumerate(automaton.propositions):
         flag = 1 << bit
@@ -60,7 +74,7 @@ def letters_of(stop: Stop, map: SemanticMap, task: Task, automaton: Automaton) -
             case About.DID if _is_goal(stop, task, what.subject):
                 begins |= flag
             case About.LOOKED if stop.action is Action.LOOK and _is_room(stop, map, what.subject):
-                begins |= flag
+                begins |= flag if seen_from_m is None or sees_into(map, what.subject, seen_from_m) else 0
             case About.CARRYING if stop.action is Action.PICK and _is_thing(stop, task, what.subject):
                 begins |= flag
             case About.CARRYING if stop.action is Action.DELIVER:
@@ -86,6 +100,25 @@ def _is_room(stop: Stop, map: SemanticMap, room: str) -> bool:
         return True
     viewpoints = [one.viewpoint_m for one in map.rooms if one.id == room]
     return any(math.dist(site.position_m, at) <= LOOK_REACH_M for site in stop.sites for at in viewpoints)
+
+
+def sees_into(map: SemanticMap, room: str, at_m: Floats) -> bool:
+    """Whether nothing known stands between that place (3,) and the door of the room: no wall, and no smoke.
+
+    What the line of sight meets last is the door itself.
+    """
+    doors = [one.door_m for one in map.rooms if one.id == room]
+    if not doors:
+        return True
+    frame, to_m = map.frame, np.asarray(doors[0].centre_m)
+    count = int(np.ceil(SIGHT_PER_CELL * float(np.linalg.norm(to_m - at_m)) / frame.resolution_m))
+    points = np.linspace(at_m, to_m, count + 2)
+    cells = np.clip(frame.cells_of(points), 0, np.array(frame.shape) - 1)
+    flat = np.ravel_multi_index(tuple(cells.T), frame.shape)
+    matter = map.cells.ravel()[flat] != Cell.FREE
+    smoke = [region.cells for region in map.regions if region.kind is RegionKind.SMOKE]
+    hidden = bool(smoke) and bool(np.isin(flat, np.concatenate(smoke)).any())
+    return not hidden and not bool((matter[:-1] & ~matter[1:]).any())
 
 
 def _is_thing(stop: Stop, task: Task, label: str) -> bool:

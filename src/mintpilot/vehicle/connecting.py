@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 import socket
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from mintpilot.core.errors import DeviceError, MissingPartError
@@ -50,6 +52,8 @@ def _check_port(address: Address) -> None:
     """The library shares a port with whoever has it already, and then hears nothing: that must be told before."""
     transport, _, place = address.connection.partition("://")
     host, _, port = place.rpartition(":")
+    if transport == "serial" and host.startswith("/") and not os.access(host, os.R_OK | os.W_OK):
+        raise _closed(address, "it may not be read and written" if Path(host).exists() else "there is no such device")
     if not address.listens:
         return
     kind = socket.SOCK_DGRAM if transport == "udpin" else socket.SOCK_STREAM

@@ -24,6 +24,8 @@ HOLD_S = 0.5
 """After this time without a sign of life from the loop the vehicle brakes and hovers, seconds."""
 LATE_S = 0.3
 """A tick that comes so long after the one before is late, seconds."""
+SENDING = frozenset({Phase.ARMING, Phase.ENGAGING, Phase.FLYING})
+"""Phases in which set-points are sent, where there is one."""
 END_S = 3.0
 """After this time it lands where that is known free, or returns where that clears everything mapped, seconds."""
 
@@ -48,7 +50,7 @@ def link_step(state: ControlState, event: LinkEvent) -> tuple[ControlState, tupl
             watching.watch(turn)
             _deadman(turn)
             phases.tick(turn, elapsed_s)
-            if turn.state.phase in (Phase.ENGAGING, Phase.FLYING) and turn.state.hover is not None:
+            if turn.state.phase in SENDING and turn.state.hover is not None:
                 turn.give(turn.state.hover)
     return turn.state, tuple(turn.out)
 
@@ -68,10 +70,7 @@ def _brake(turn: Turn) -> None:
     state = turn.state
     match state.phase:
         case Phase.ARMING:
-            if state.seen.armed:
-                turn.ask(Action.DISARM)
-            turn.end(MotionEnd.STOPPED)
-            turn.enter(Phase.GROUND)
+            turn.stay_down(MotionEnd.STOPPED)
         case Phase.FLYING if state.course is not None:
             turn.set(course=replace(state.course, braking=True))
         case Phase.FLYING:
@@ -91,7 +90,7 @@ def _begin(turn: Turn, motion: Motion) -> None:
         turn.set(motion=state.motion, rows=state.rows)
         return
     if isinstance(motion, TakeOff) and state.phase is Phase.GROUND:
-        turn.set(refusal="")
+        turn.set(refusal="", hover=None, running_s=None)
         turn.enter(Phase.ARMING)
         return
     if isinstance(motion, TakeOff) and state.phase is Phase.FLYING:
@@ -136,6 +135,8 @@ def _deadman(turn: Turn) -> None:
     """No sign of life from the loop: hold, then land or return where that is known to be free."""
     state = turn.state
     silent_s = state.now_s - state.fed_s
+    if state.phase is Phase.ARMING and silent_s >= END_S:
+        turn.stay_down(MotionEnd.STOPPED, f"nothing was heard of the mission for {silent_s:.1f} s before the take-off")
     if not state.airborne or (silent_s < HOLD_S and not state.leaving):
         return
     if state.phase is not Phase.FLYING:

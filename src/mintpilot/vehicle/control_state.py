@@ -71,6 +71,8 @@ class ControlState:
     asked_s: float = -math.inf
     refusal: str = ""
     """The autopilot's last refusal, for messages."""
+    running_s: float | None = None
+    """Since when its motors run, by its own word, before the take-off."""
     act_done: bool = True
     """Whether the gripper has answered, or has nothing to do."""
     by_hand: str = ""
@@ -150,6 +152,16 @@ class Turn:
         self.end(MotionEnd.FAILED, reason)
         self.enter(Phase.RELEASED)
         self.set(course=None, hover=None)
+
+    def stay_down(self, end: MotionEnd, reason: str = "") -> None:
+        """No take-off: the motors stand still, and nothing is sent any more."""
+        if self.state.seen.armed or self.state.asked is Action.ARM:
+            self.give(Act(action=Action.DISARM))
+        if self.state.hover is not None:
+            self.give(Act(action=Action.SILENCE))
+        self.end(end, reason)
+        self.enter(Phase.GROUND)
+        self.set(hover=None)
 
     def hover_here(self) -> None:
         """From now on the set-point is where the vehicle is."""

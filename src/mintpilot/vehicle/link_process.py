@@ -26,7 +26,7 @@ from mintpilot.vehicle.envelope import SafetyEnvelope
 from mintpilot.vehicle.local_frame import LocalFrame
 from mintpilot.vehicle.mavsdk_link import MavsdkLink
 from mintpilot.vehicle.preparing import Prepared, frame_of, prepare
-from mintpilot.vehicle.signals import Act, Changed, Command, Ended, Fed, LinkEvent, Seen, Tick, Told
+from mintpilot.vehicle.signals import Act, Action, Changed, Command, Ended, Fed, LinkEvent, Seen, Tick, Told
 
 TICK_S = 0.05
 """Between set-points, seconds: 20 a second."""
@@ -108,6 +108,8 @@ def _stand_alone() -> None:
         os.setsid()
     with suppress(OSError):
         os.nice(-10)
+    with suppress(OSError, AttributeError):  # where that is allowed: whenever it wants a core, it gets one
+        os.sched_setscheduler(0, os.SCHED_RR, os.sched_param(1))
 
 
 class _LinkLoop:
@@ -132,6 +134,8 @@ class _LinkLoop:
             for answer in self._link.answers():
                 self._step(answer)
             self._step(Tick(time_s=time.monotonic(), seen=self._seen()))
+            self._link.keep_rates()
+            self._link.keep_beating()
             snapshot = Snapshot(time_s=time.monotonic(), seen=self._state.seen, phase=self._state.phase)
             self._channel.show(snapshot)
 
@@ -160,7 +164,9 @@ class _LinkLoop:
 
     def _seen(self) -> Seen:
         heard, setup = self._link.telemetry, self._setup
-        if self._state.phase is Phase.GROUND:  # it stands where it stands; from the motors on the frame is fixed
+        state = self._state
+        if state.phase is Phase.GROUND or (state.phase is Phase.ARMING and state.asked is not Action.TAKE_OFF):
+            # It stands where it stands; its estimate wanders, and ArduPilot sets its height anew when it is armed.
             self._frame = frame_of(heard, setup.envelope, setup.address.heading_rad, setup.georeference)
         return heard.seen(self._frame, georeferenced=setup.georeference is not None)
 

@@ -78,6 +78,7 @@ class MavlinkVehicle(Vehicle):
         self._snapshot: Snapshot | None = None
         self._events: list[VehicleInput] = []
         self._fed_s = self._heard_s = 0.0
+        self._armed_s: float | None = None
         self._lost = ""
         self._process.start()
         theirs.close()
@@ -102,6 +103,10 @@ class MavlinkVehicle(Vehicle):
         """Share of the battery that is left; None: not told."""
         return self._snapshot.seen.battery if self._snapshot is not None else None
 
+    def tilt(self) -> tuple[float, float]:
+        """Roll to the right and pitch nose up, as they were heard last, radians."""
+        return self._snapshot.seen.tilt_rad if self._snapshot is not None else (0.0, 0.0)
+
     def readiness(self, longest_s: float = 30.0) -> tuple[Check, ...]:
         """Waits until the autopilot may be armed, and until its battery is told, at most so many seconds."""
         end_s = self._now() + longest_s
@@ -123,7 +128,10 @@ class MavlinkVehicle(Vehicle):
         if self._snapshot is None:
             raise DeviceError("nothing was heard of the vehicle yet")
         seen = self._snapshot.seen
-        left = self._endurance_s if seen.battery is None else self._endurance_s * seen.battery
+        if seen.battery is None:  # then its flight is timed
+            left = self._endurance_s - (now - self._armed_s if self._armed_s is not None else 0.0)
+        else:
+            left = self._endurance_s * seen.battery
         return VehicleState(
             time_s=now,
             position_m=seen.position_m,
@@ -233,6 +241,8 @@ class MavlinkVehicle(Vehicle):
         match report:
             case Snapshot():
                 self._snapshot = report
+                if report.seen.armed and self._armed_s is None:
+                    self._armed_s = self._now()
             case Ended():
                 self._events.append(self._motion_ended(report))
             case Changed(link=Link.TELEMETRY, up=False):

@@ -18,6 +18,8 @@ AUTOPILOT_IDS = {3: Autopilot.ARDUPILOT, 12: Autopilot.PX4}
 """`autopilot` of a heartbeat → firmware."""
 
 PX4_AUTO = 4
+STANDING_BY: dict[Autopilot, tuple[int, int]] = {Autopilot.PX4: (PX4_AUTO, 3), Autopilot.ARDUPILOT: (4, 0)}
+"""Main and sub mode in which it is armed: Hold, GUIDED."""
 _PX4_MAIN = {
     1: "MANUAL",
     2: "ALTCTL",
@@ -38,7 +40,8 @@ _PX4 = {
 }
 _COPTER = {
     0: "STABILIZE", 1: "ACRO", 2: "ALT_HOLD", 3: "AUTO", 4: "GUIDED", 5: "LOITER", 6: "RTL", 7: "CIRCLE", 9: "LAND",
-    11: "DRIFT", 13: "SPORT", 16: "POSHOLD", 17: "BRAKE", 18: "THROW", 20: "GUIDED_NOGPS", 21: "SMART_RTL",
+    11: "DRIFT", 13: "SPORT", 14: "FLIP", 15: "AUTOTUNE", 16: "POSHOLD", 17: "BRAKE", 18: "THROW", 19: "AVOID_ADSB",
+    20: "GUIDED_NOGPS", 21: "SMART_RTL", 22: "FLOWHOLD", 23: "FOLLOW", 24: "ZIGZAG", 27: "AUTO_RTL",
 }  # fmt: skip
 _ARDUPILOT = {
     "GUIDED": Mode.OURS,
@@ -47,6 +50,7 @@ _ARDUPILOT = {
     "LAND": Mode.LAND,
     "RTL": Mode.RETURN,
     "SMART_RTL": Mode.RETURN,
+    "AUTO_RTL": Mode.RETURN,
 }
 
 

@@ -10,19 +10,25 @@ from mintpilot.core.motion import Land, MotionEnd, PerformAction, TakeOff
 from mintpilot.core.task import Action as StopAction
 from mintpilot.vehicle.control_state import Phase, Turn
 from mintpilot.vehicle.course import FAR_M, Course, SetPoint, advanced, straight
-from mintpilot.vehicle.signals import Action, Did
+from mintpilot.vehicle.signals import Act, Action, Did, Mode, Start
 
 ANSWER_S = 10.0
 """Longest wait for an answer of the autopilot, seconds."""
+HEARD_S = 0.5
+"""A loop that was not heard for so long starts no motors, seconds."""
 READY_S = 60.0
 """Longest wait for an autopilot that is not ready to be armed, seconds."""
 ARM_S = 30.0
 """For so long an autopilot that refuses to be armed is asked again ..."""
 AGAIN_S = 2.0
 """... after this time each, seconds."""
+ANEW_S = 0.1
+"""A position that came so long after its motors were started was measured after that, seconds."""
 CLIMB_S = 30.0
 """Longest take-off, seconds, besides that of its height at `SLOWEST_CLIMB_MPS`."""
 SLOWEST_CLIMB_MPS = 0.3
+HELD_S = 3.0
+"""PX4 calls a take-off done 0.8 m too low, and climbs on in Hold: where it stands still so long after, it is done."""
 STREAM_S = 1.3
 """Set-points are sent for so long before the autopilot is asked to follow them, seconds."""
 ENGAGE_S = 8.0
@@ -70,15 +76,14 @@ def did(turn: Turn, event: Did) -> None:
     turn.set(asked=None, refusal=event.error)
     agreed = not event.error
     match event.action:
-        case Action.ARM if agreed and state.phase is Phase.ARMING:
-            turn.ask(Action.TAKE_OFF, state.envelope.hover_m[2] - state.envelope.ground_m)
+        case Action.ARM if agreed:
+            turn.set(running_s=turn.state.now_s)
         case Action.TAKE_OFF if agreed:
             turn.enter(Phase.CLIMBING)
             turn.set(mode_since_s=turn.state.now_s)
         case Action.TAKE_OFF:
-            turn.end(MotionEnd.FAILED, f"the autopilot refused to take off: {event.error}")
-            turn.ask(Action.DISARM)
-            turn.enter(Phase.GROUND)
+            turn.give(Act(action=Action.DISARM))
+            turn.stay_down(MotionEnd.FAILED, f"the autopilot refused to take off: {event.error}")
         case Action.ENGAGE if agreed:
             _engaged(turn)
         case Action.LAND | Action.RETURN if agreed:
@@ -106,26 +111,49 @@ def _gripped(turn: Turn, event: Did) -> None:
 
 
 def _arming(turn: Turn) -> None:
-    state = turn.state
-    waited_s = state.now_s - state.since_s
-    if state.asked is not None:
+    state, seen = turn.state, turn.state.seen
+    waited_s, again = state.now_s - state.since_s, state.now_s - state.asked_s >= AGAIN_S
+    streams = seen.start is Start.SET_POINTS
+    if state.asked is not None or state.now_s - state.fed_s >= HEARD_S:
         return
-    if state.seen.not_ready and waited_s < READY_S:
+    if state.running_s is not None:
+        _lift(turn, state.running_s)
         return
-    if state.seen.not_ready or waited_s > READY_S + ARM_S or (state.refusal and waited_s > ARM_S):
-        said = f"; it says: {state.seen.status}" if state.seen.status else ""
-        why = state.refusal or state.seen.not_ready
-        turn.end(MotionEnd.FAILED, f"the autopilot cannot be armed after {waited_s:.0f} s: {why}{said}")
-        turn.enter(Phase.GROUND)
-    elif state.now_s - state.asked_s >= AGAIN_S:
+    if streams and state.hover is None:
+        turn.hover_here()
+    ready = seen.mode is (Mode.HOLD if seen.start is Start.HOLD else Mode.OURS)
+    why = seen.not_ready or ("" if ready else f"it stays in mode {seen.mode_name}")
+    if why and waited_s < READY_S:
+        if not ready and again and (not streams or waited_s >= STREAM_S):
+            turn.ask(Action.ENGAGE if streams else Action.STAND_BY)
+    elif why or waited_s > READY_S + ARM_S or (state.refusal and waited_s > ARM_S):
+        said = f"; it says: {seen.status}" if seen.status else ""
+        words = f"the autopilot cannot be armed after {waited_s:.0f} s: {state.refusal or why}{said}"
+        turn.stay_down(MotionEnd.FAILED, words)
+    elif again or not state.refusal:
         turn.ask(Action.ARM)
+
+
+def _lift(turn: Turn, running_s: float) -> None:
+    """Its motors run: up to the hover point, once it was heard where it stands now. Arming may set its height anew."""
+    here, envelope = turn.state.hover, turn.state.envelope
+    if turn.state.seen.position_s < running_s + ANEW_S:
+        return
+    if here is None:
+        turn.ask(Action.TAKE_OFF, envelope.hover_m[2] - envelope.ground_m)
+        return
+    turn.enter(Phase.FLYING)
+    way = straight(here.position_m, envelope.hover_m, here.yaw_rad, APPROACH_MPS)
+    turn.set(mode_since_s=turn.state.now_s, rest_s=None, slow_s=None, course=Course(trajectory=way))
 
 
 def _climbing(turn: Turn) -> None:
     state, seen = turn.state, turn.state.seen
     height_m = state.envelope.hover_m[2] - state.envelope.ground_m
     risen_m = seen.position_m[2] - state.envelope.ground_m
-    if risen_m >= height_m - max(0.1 * height_m, 0.2) and abs(seen.velocity_mps[2]) < STILL_MPS:
+    through = seen.mode is Mode.HOLD and seen.heartbeat_s > state.mode_since_s + HELD_S  # it has ended its take-off
+    high = risen_m >= (height_m / 2 if through else height_m - max(0.1 * height_m, 0.2))
+    if high and abs(seen.velocity_mps[2]) < STILL_MPS:
         turn.hover_here()
         turn.enter(Phase.ENGAGING)
     elif state.now_s - state.since_s > CLIMB_S + height_m / SLOWEST_CLIMB_MPS:

@@ -15,12 +15,13 @@ from mintpilot.vehicle.envelope import SafetyEnvelope
 from mintpilot.vehicle.local_frame import LocalFrame, frame_at
 from mintpilot.vehicle.mavsdk_link import MavsdkLink
 from mintpilot.vehicle.modes import Autopilot
+from mintpilot.vehicle.signals import Start
 from mintpilot.vehicle.telemetry import Telemetry
 
 POSITION_S = 90.0
 """Longest wait for the position, seconds: ArduPilot takes half a minute from its start."""
-ORIGIN_S = 4.0
-"""Longest wait for the place of the local origin on the earth, where it is of use only, seconds."""
+ORIGIN_TRIES = 4
+"""So often the place of the local origin on the earth is asked for, and waited for 1 s each."""
 PAD_M = 1.0
 """So far from the mission's start the vehicle may stand by its own global position, metres."""
 
@@ -55,9 +56,9 @@ def prepare(
         sleep: waits that many seconds.
     """
     heard = link.telemetry
-    _wait_for_position(heard, georeference, sleep)
+    _wait_for_position(link, georeference, sleep)
     autopilot = heard.autopilot or Autopilot.PX4
-    checks = [_link(autopilot), _position(heard)]
+    checks = [_link(autopilot), _sensors(heard), _position(heard)]
     frame = frame_of(heard, envelope, heading_rad, georeference)
     if georeference is not None:
         checks += [_global_position(heard), _pad(heard, frame, envelope)]
@@ -68,18 +69,22 @@ def prepare(
     checks += failsafes.apply(wanted, link.get_parameter, link.set_parameter, only_read=accept)
     if autopilot is Autopilot.ARDUPILOT:
         checks.append(failsafes.battery_threshold(link.get_parameter))
+    if heard.start is not Start.SET_POINTS:
+        checks.append(_mode(link.stand_by()))
     return Prepared(autopilot=autopilot, checks=tuple(checks), return_clear=returns)
 
 
-def _wait_for_position(heard: Telemetry, georeference: Georeference | None, sleep: Callable[[float], None]) -> None:
-    """All that is waited for has one time-out together; what is of use only, a short one of its own."""
-    placed = georeference is not None
+def _wait_for_position(link: MavsdkLink, georeference: Georeference | None, sleep: Callable[[float], None]) -> None:
+    """All that is waited for has one time-out together; the place of the origin, a short one of its own."""
+    heard, placed = link.telemetry, georeference is not None
     _wait(
-        lambda: heard.knows_position and (not placed or (heard.knows_global and heard.origin is not None)),
-        POSITION_S,
-        sleep,
+        lambda: heard.health.sensors and heard.knows_position and (not placed or heard.knows_global), POSITION_S, sleep
     )
-    _wait(lambda: heard.origin is not None, 0.0 if placed else ORIGIN_S, sleep)
+    for _ in range(ORIGIN_TRIES):
+        if heard.origin is not None:
+            return
+        link.request_origin()
+        _wait(lambda: heard.origin is not None, 1.0, sleep)
 
 
 def _set_up_return(
@@ -148,6 +153,20 @@ def _wait(until: Callable[[], bool], longest_s: float, sleep: Callable[[float], 
 
 def _link(autopilot: Autopilot) -> Check:
     return Check(check="link", ok=True, value=f"{autopilot.value} is heard", wanted="an autopilot is heard")
+
+
+def _sensors(heard: Telemetry) -> Check:
+    ok = heard.health.sensors
+    value = "well" if ok else "not told to be well"
+    how = "calibrate them; the ground station shows which one is not"
+    return Check(check="sensors", ok=ok, value=value, wanted="gyroscope and accelerometer are well", how=how)
+
+
+def _mode(refusal: str) -> Check:
+    how = "switch it to Hold (PX4) or GUIDED (ArduPilot), and see what it complains of"
+    return Check(
+        check="mode in which it is armed", ok=not refusal, value=refusal or "Hold or GUIDED", wanted="taken", how=how
+    )
 
 
 def _position(heard: Telemetry) -> Check:

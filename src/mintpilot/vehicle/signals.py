@@ -26,6 +26,17 @@ class Mode(StrEnum):
     """Flown by somebody else: a pilot's mode, a mission of a ground station."""
 
 
+class Start(StrEnum):
+    """How its motors are started. Neither firmware may be armed in just any mode, e.g. in that of the last landing."""
+
+    HOLD = "hold"
+    """PX4: in Hold, then its own take-off."""
+    GUIDED = "guided"
+    """ArduPilot: in GUIDED, then its own take-off."""
+    SET_POINTS = "set-points"
+    """PX4 without a global position, which Hold needs: in OFFBOARD, and it climbs after our set-points."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Seen:
     """What was heard from the autopilot so far, in the map's frame."""
@@ -39,10 +50,13 @@ class Seen:
     position_m: Vec3 = (0.0, 0.0, 0.0)
     velocity_mps: Vec3 = (0.0, 0.0, 0.0)
     yaw_rad: float = 0.0
+    tilt_rad: tuple[float, float] = (0.0, 0.0)
+    """Roll to the right, pitch nose up."""
     position_known: bool = False
     """Whether the autopilot itself counts its local position as good."""
     mode: Mode = Mode.OTHER
     mode_name: str = ""
+    start: Start = Start.HOLD
     armed: bool = False
     on_ground: bool = True
     not_ready: str = ""
@@ -69,6 +83,8 @@ Command: TypeAlias = Motion | Brake | Settle
 class Action(StrEnum):
     """What the autopilot is asked to do besides set-points. Each is answered by `Did`."""
 
+    STAND_BY = "stand by"
+    """Go into the mode in which it is armed: Hold on PX4, GUIDED on ArduPilot."""
     ARM = "arm"
     DISARM = "disarm"
     TAKE_OFF = "take-off"

@@ -10,7 +10,7 @@ from typing import Final
 from mintpilot.core.geometry import Vec3
 from mintpilot.vehicle.local_frame import LocalFrame
 from mintpilot.vehicle.modes import AUTOPILOT_IDS, Autopilot, mode_of
-from mintpilot.vehicle.signals import Seen
+from mintpilot.vehicle.signals import Mode, Seen, Start
 
 ARMED_FLAG: Final = 128
 """In `base_mode` of a heartbeat."""
@@ -27,6 +27,11 @@ GUESSED: Final = 128
 RESTARTED_MS: Final = 10_000
 """A clock that goes back by more than this belongs to an autopilot that has restarted."""
 
+GLOBAL_S: Final = 2.0
+"""A global position that lags so far behind the local one is none, seconds."""
+FLIES_US: Final = (0, 1, 2)
+"""`battery_function` of batteries that keep it in the air: unknown, all, propulsion."""
+
 Fields = Mapping[str, object]
 
 
@@ -35,6 +40,8 @@ class Health:
     """What the autopilot says of its own readiness."""
 
     armable: bool = False
+    sensors: bool = False
+    """Whether its gyroscope and its accelerometer are well; of a compass indoors nothing need be told."""
     local_position: bool = False
     global_position: bool = False
     home: bool = False
@@ -46,6 +53,8 @@ class Telemetry:
     Attributes:
         health: its readiness.
         autopilot: the firmware; None until its first heartbeat.
+        positions: how often its local position came.
+        heartbeat_s: when its heartbeat came last.
     """
 
     def __init__(self) -> None:
@@ -55,14 +64,16 @@ class Telemetry:
         self.ned_m: Vec3 | None = None
         self._velocity_ned: Vec3 = (0.0, 0.0, 0.0)
         self._heading_rad = 0.0
-        self._message_s = self._heartbeat_s = self._position_s = -1e9
+        self._tilt_rad = (0.0, 0.0)
+        self.positions = 0
+        self._message_s = self.heartbeat_s = self._position_s = self._global_s = -1e9
         self._every_s = 1.0
         self._boot_ms = -1
         self._custom_mode = 0
         self._armed = False
         self._on_ground = True
         self._status = ""
-        self._battery: float | None = None
+        self._batteries: dict[int, float] = {}
         self._estimator: int | None = None
 
     @property
@@ -80,6 +91,13 @@ class Telemetry:
         """Whether the autopilot knows where it is on the earth, and where home is."""
         return self.health.global_position and self.health.home
 
+    @property
+    def start(self) -> Start:
+        """How its motors are started."""
+        if self.autopilot is Autopilot.ARDUPILOT:
+            return Start.GUIDED
+        return Start.HOLD if self._global_s > self._position_s - GLOBAL_S else Start.SET_POINTS
+
     def take(self, name: str, fields: Fields, time_s: float) -> None:
         """Takes in one message that arrived then. Fields that are missing or not finite leave all as it was."""
         self._message_s = time_s
@@ -90,14 +108,18 @@ class Telemetry:
                 self._position(fields, time_s)
             case "ATTITUDE":
                 self._heading_rad = _number(fields, "yaw", self._heading_rad)
+                self._tilt_rad = (_number(fields, "roll", 0.0), _number(fields, "pitch", 0.0))
             case "EXTENDED_SYS_STATE":
                 self._on_ground = _number(fields, "landed_state", 0) == ON_GROUND
-            case "BATTERY_STATUS":
+            case "BATTERY_STATUS" if _number(fields, "battery_function", 0) in FLIES_US:
                 left = _number(fields, "battery_remaining", -1)
-                self._battery = left / 100 if 0 <= left <= 100 else self._battery
+                if 0 <= left <= 100:
+                    self._batteries[int(_number(fields, "id", 0))] = left / 100
+            case "GLOBAL_POSITION_INT" if _number(fields, "lat", 0) or _number(fields, "lon", 0):
+                self._global_s = time_s
             case "ESTIMATOR_STATUS" | "EKF_STATUS_REPORT":
                 self._estimator = int(_number(fields, "flags", 0))
-            case "STATUSTEXT" if _number(fields, "severity", 7) <= WARNING:
+            case "STATUSTEXT" if _number(fields, "severity", 7) <= WARNING and not _number(fields, "chunk_seq", 0):
                 self._status = str(fields.get("text", "")).strip("\0 ")
             case "GPS_GLOBAL_ORIGIN":
                 latitude, longitude = _number(fields, "latitude", 0), _number(fields, "longitude", 0)
@@ -111,20 +133,22 @@ class Telemetry:
         mode, name = mode_of(autopilot, self._custom_mode)
         return Seen(
             message_s=self._message_s,
-            heartbeat_s=self._heartbeat_s,
+            heartbeat_s=self.heartbeat_s,
             heartbeat_every_s=self._every_s,
             position_s=self._position_s,
             position_m=frame.from_ned(self.ned_m or (0.0, 0.0, 0.0)),
             velocity_mps=frame.velocity_from_ned(self._velocity_ned),
             yaw_rad=frame.yaw_from_ned(self._heading_rad),
+            tilt_rad=self._tilt_rad,
             position_known=self.knows_position,
             mode=mode,
             mode_name=name,
+            start=self.start,
             armed=self._armed,
             on_ground=self._on_ground,
             not_ready=self._not_ready(georeferenced),
             status=self._status,
-            battery=self._battery,
+            battery=min(self._batteries.values(), default=None),
         )
 
     def _not_ready(self, georeferenced: bool) -> str:
@@ -135,17 +159,19 @@ class Telemetry:
             return "it has no global position"
         if georeferenced and not health.home:
             return "it has no home position"
-        return "" if health.armable else "its own checks before arming do not pass"
+        # PX4 tells only whether it may be armed in the mode that it is in.
+        waits = self.start is Start.SET_POINTS and mode_of(Autopilot.PX4, self._custom_mode)[0] is not Mode.OURS
+        return "" if health.armable or waits else "its own checks before arming do not pass"
 
     def _heartbeat(self, fields: Fields, time_s: float) -> None:
         firmware = AUTOPILOT_IDS.get(int(_number(fields, "autopilot", -1)))
         if firmware is None:
             return
-        if self.autopilot is not None and self._heartbeat_s > 0:
-            gap_s = time_s - self._heartbeat_s
+        if self.autopilot is not None and self.heartbeat_s > 0:
+            gap_s = time_s - self.heartbeat_s
             self._every_s += 0.3 * (min(gap_s, 1.5) - self._every_s)
         self.autopilot = firmware
-        self._heartbeat_s = time_s
+        self.heartbeat_s = time_s
         self._custom_mode = int(_number(fields, "custom_mode", self._custom_mode))
         self._armed = bool(int(_number(fields, "base_mode", 0)) & ARMED_FLAG)
 
@@ -156,6 +182,7 @@ class Telemetry:
         if late or not all(math.isfinite(value) for value in values):
             return
         x, y, z, vx, vy, vz = values
+        self.positions += 1
         self._boot_ms, self._position_s = boot_ms, time_s
         self.ned_m, self._velocity_ned = (x, y, z), (vx, vy, vz)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import threading
 from collections import deque
 from collections.abc import Sequence
@@ -12,12 +13,14 @@ import numpy as np
 
 from mintpilot.core.errors import DeviceError, MissingPartError
 from mintpilot.core.geometry import Floats
-from mintpilot.voice.audio import read_wav
+from mintpilot.voice.audio import from_pcm, read_wav
 from mintpilot.voice.echo import FRAME, EchoCanceller
 from mintpilot.voice.ports import RATE_HZ, SoundLink
 
 _KEPT = 3000
 """Frames of the microphone that wait to be listened to, 30 s; of a flood the oldest are dropped."""
+_MOST_BYTES = 1 << 16
+"""Of a pipe at one time."""
 _GONE_S = 2.0
 """A microphone that gives nothing for so long of the mission clock is gone, seconds."""
 
@@ -97,24 +100,14 @@ class PortAudioLink(SoundLink):
             self._in.append(cleaned)
 
 
-class FileLink(SoundLink):
-    """Plays nothing aloud and hears a recording, as fast as the mission clock goes: for trials without a device.
+class _Silent(SoundLink):
+    """Plays nothing aloud; it takes as long as the sound is."""
 
-    Args:
-        path: a WAV file.
-
-    Raises:
-        InputError: it cannot be read.
-    """
-
-    def __init__(self, path: Path) -> None:
-        self._sound = read_wav(path)
-        self._begun_s: float | None = None
-        self._given = 0
+    def __init__(self) -> None:
         self._until_s = -np.inf
 
     def play(self, samples: Floats, time_s: float) -> None:
-        """Takes as long as the sound is."""
+        """See `SoundLink.play`."""
         self._until_s = max(self._until_s, time_s) + len(samples) / RATE_HZ
 
     def stop(self) -> None:
@@ -124,6 +117,60 @@ class FileLink(SoundLink):
     def is_playing(self, time_s: float) -> bool:
         """See `SoundLink.is_playing`."""
         return time_s < self._until_s
+
+
+class PipeLink(_Silent):
+    """Hears a pipe of packed 16-bit samples at `RATE_HZ`, as another program brings them; plays nothing aloud.
+
+    Args:
+        path: a named pipe, or a device file.
+
+    Raises:
+        DeviceError: it cannot be read.
+    """
+
+    def __init__(self, path: Path) -> None:
+        super().__init__()
+        try:
+            self._pipe = os.open(path, os.O_RDONLY | os.O_NONBLOCK)
+        except OSError as error:
+            raise DeviceError(f"{path} cannot be heard ({error.strerror}): give a WAV file, or a pipe") from error
+        self._rest = b""
+
+    def listen(self, time_s: float) -> Sequence[Floats]:  # noqa: ARG002
+        """See `SoundLink.listen`; silence while nobody writes."""
+        try:
+            came = self._rest + os.read(self._pipe, _MOST_BYTES)
+        except BlockingIOError:
+            return []
+        except OSError as error:
+            raise DeviceError(f"the pipe gives no sound any more ({error.strerror}). Answer by keys.") from error
+        whole = len(came) // 2 * 2
+        self._rest = came[whole:]
+        return [from_pcm(came[:whole])] if whole else []
+
+    def close(self) -> None:
+        """See `SoundLink.close`."""
+        if self._pipe >= 0:
+            os.close(self._pipe)
+            self._pipe = -1
+
+
+class FileLink(_Silent):
+    """Hears a recording, as fast as the mission clock goes; plays nothing aloud.
+
+    Args:
+        path: a WAV file.
+
+    Raises:
+        InputError: it cannot be read.
+    """
+
+    def __init__(self, path: Path) -> None:
+        super().__init__()
+        self._sound = read_wav(path)
+        self._begun_s: float | None = None
+        self._given = 0
 
     def listen(self, time_s: float) -> Sequence[Floats]:
         """The part of the recording that has passed since the last call; silence after its end."""
@@ -137,3 +184,16 @@ class FileLink(SoundLink):
 
     def close(self) -> None:
         """Nothing to give back."""
+
+
+def link_to(path: Path | None) -> SoundLink:
+    """The microphone and loudspeaker of this machine; with a path a recording, or a pipe, in the microphone's place.
+
+    Raises:
+        MissingPartError: PortAudio is not installed.
+        DeviceError: there is no microphone or no loudspeaker, or the pipe cannot be opened.
+        InputError: the recording cannot be read.
+    """
+    if path is None:
+        return PortAudioLink()
+    return FileLink(path) if path.is_file() or not path.exists() else PipeLink(path)

@@ -34,13 +34,9 @@ class _ProcessSpeech(Speech):
             raise MissingPartError(
                 f"speech by {name} needs the package '{missing[0]}': python -m pip install 'mintpilot[voice-gpl]'"
             )
-        self._name = name
-        self._process = subprocess.Popen(
-            [sys.executable, "-m", "mintpilot.voice.gpl_worker", name],
-            stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, bufsize=0,
-        )  # fmt: skip
+        self._name, self._is_closed = name, False
         try:
-            self._answer(START_S)
+            self._start()
         except DeviceError as error:
             self.close()
             raise InputError(str(error)) from error
@@ -50,17 +46,32 @@ class _ProcessSpeech(Speech):
         if lang not in self.languages:
             raise DeviceError(f"{self._name} does not speak '{lang}'; it speaks {', '.join(self.languages)}")
         asked = json.dumps({"text": _sentence(text[:LONGEST]), "lang": lang, "speed": min(3.0, max(0.5, speed))})
-        stdin = self._process.stdin
-        if stdin is None or stdin.closed:
+        if self._is_closed:
             raise DeviceError(f"{self._name} was closed")
+        if self._process.poll() is not None:  # it was too slow, or died: one text is lost, not the voice
+            self._release()
+            self._start()
+        stdin = self._process.stdin
+        assert stdin is not None
         try:
             stdin.write(asked.encode() + b"\n")
         except OSError as error:
-            raise DeviceError(f"the process of {self._name} is gone: start the mission again") from error
+            raise DeviceError(f"the process of {self._name} is gone") from error
         return from_pcm(self._answer(SAY_S))
 
     def close(self) -> None:
         """Ends the process. Safe to call again."""
+        self._is_closed = True
+        self._release()
+
+    def _start(self) -> None:
+        self._process = subprocess.Popen(
+            [sys.executable, "-m", "mintpilot.voice.gpl_worker", self._name],
+            stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, bufsize=0,
+        )  # fmt: skip
+        self._answer(START_S)
+
+    def _release(self) -> None:
         for pipe in (self._process.stdin, self._process.stdout):
             if pipe is not None:
                 pipe.close()
@@ -91,7 +102,7 @@ class _ProcessSpeech(Speech):
                 raise DeviceError(f"{self._name} took too long; it was ended")
             piece = stdout.read(count - len(data))
             if not piece:
-                raise DeviceError(f"the process of {self._name} ended: start the mission again")
+                raise DeviceError(f"the process of {self._name} ended")
             data += piece
         return data
 

@@ -35,7 +35,7 @@ class HearingSettings:
     """Sound kept from before its beginning."""
     confidence: float = 0.02
     """Least product of both recognisers' probabilities of one of `mintpilot.voice.ports.WORDS`."""
-    freely: float = 0.5
+    freely: float = 0.4
     """Least probability of each recogniser's free text, which must be read alike."""
 
 

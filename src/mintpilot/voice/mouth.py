@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import re
 from collections import OrderedDict
+from collections.abc import Mapping
 from concurrent.futures import Future, ThreadPoolExecutor
 from concurrent.futures import TimeoutError as NotYet
 from dataclasses import dataclass
@@ -13,12 +15,21 @@ import numpy as np
 from mintpilot.core.errors import MintPilotError
 from mintpilot.core.geometry import Floats
 from mintpilot.voice.audio import clean
-from mintpilot.voice.ports import SoundLink, Speech
+from mintpilot.voice.ports import RATE_HZ, SoundLink, Speech
 
 _KEPT = 64
 """Texts whose sound is kept."""
 _WAITING = 8
 """Notices that wait; more are shown only."""
+MUTED_S = 0.6
+"""What is not said aloud takes so long to read at least: what is said meanwhile does not answer it, seconds."""
+_UNITS: Mapping[str, tuple[str, str]] = {
+    "en": ("seconds", "metres"),
+    "de": ("Sekunden", "Meter"),
+    "fr": ("secondes", "mètres"),
+    "es": ("segundos", "metros"),
+}
+"""How ``s`` and ``m`` are said."""
 SYNTHESIS_S = 10.0
 """Speech that takes longer to make is given up: the caption stands, seconds."""
 
@@ -50,14 +61,21 @@ class VoiceSettings:
     speed: float = 1.0
     """1 is usual, 2 twice as fast."""
     muted: bool = False
-    """Nothing is said; captions remain."""
+    """Silence is said; captions remain."""
+
+
+def aloud(text: str, lang: str) -> str:
+    """A text with its units as they are said: ``3 s`` as ``3 seconds``."""
+    for short, word in zip(("s", "m"), _UNITS.get(lang, ()), strict=False):
+        text = re.sub(rf"(?<=\d) {short}\b(?!/)", f" {word}", text)
+    return text
 
 
 class Mouth:
     """Speaks one text after another. Never waits, unless it is told to.
 
     Args:
-        speech: makes the sound.
+        speech: makes the sound; None: there are captions only.
         link: plays it.
         settings: volume, speed, mute.
         lang: of the texts.
@@ -65,7 +83,7 @@ class Mouth:
     """
 
     def __init__(
-        self, speech: Speech, link: SoundLink, settings: VoiceSettings, *, lang: str, is_patient: bool
+        self, speech: Speech | None, link: SoundLink, settings: VoiceSettings, *, lang: str, is_patient: bool
     ) -> None:
         self._speech, self._link, self._settings = speech, link, settings
         self._lang, self._is_patient = lang, is_patient
@@ -112,8 +130,6 @@ class Mouth:
             self._playing = None
         if self._making is None and self._playing is None and self._waiting:
             said = self._waiting.pop(0)
-            if self._settings.muted:
-                return [*ended, said]
             self._making = (said, self._pool.submit(self._made, said.text, self._settings.speed), time_s)
         if self._making is not None:
             ended += self._play(*self._making, time_s)
@@ -140,9 +156,11 @@ class Mouth:
         return []
 
     def _made(self, text: str, speed: float) -> Floats:
+        if self._settings.muted or self._speech is None:
+            return np.zeros(int(MUTED_S * RATE_HZ))
         key = (text, speed)
         if key not in self._kept:
-            self._kept[key] = clean(self._speech.say(text, lang=self._lang, speed=speed))
+            self._kept[key] = clean(self._speech.say(aloud(text, self._lang), lang=self._lang, speed=speed))
             while len(self._kept) > _KEPT:
                 self._kept.popitem(last=False)
         self._kept.move_to_end(key)

@@ -28,13 +28,15 @@ _MOST_AT_ONCE = 4
 _CALLED = {Order.RETURN: "come back", Order.LAND: "land", Order.ABORT: "abort the mission", Order.CONTINUE: "continue"}
 _NOT_UNDERSTOOD = "I did not understand."
 _GIVEN_UP = "I did not understand. I take it as: you do not know."
+_TO_SCREEN = "I did not understand. Please answer on the screen."
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class VoiceParts:
     """What a voice operator is made of."""
 
-    speech: Speech
+    speech: Speech | None
+    """None: there are captions only."""
     ear: Ear
     activity: Activity
     link: SoundLink
@@ -79,8 +81,10 @@ class VoiceOperator(Operator):
         understand: what heard words mean as an answer.
         order_of: the order that a whole utterance is; None: it is none.
         caption: shows everything that is said.
+        heard: shows what was heard.
         lang: in which questions are spoken. In others than English only "stop" is heard; answers need a key.
         settings: volume, speed, mute.
+        has_screen: whether the same person sees the question on a screen: what is not understood is left to that.
         is_patient: whether `poll` waits for its own work: for simulated people, whose time stands still meanwhile.
     """
 
@@ -91,12 +95,15 @@ class VoiceOperator(Operator):
         understand: Understand,
         order_of: Callable[[str], Order | None],
         caption: Callable[[str], object] = lambda _: None,
+        heard: Callable[[str], object] = lambda _: None,
         lang: str = HEARD,
         settings: VoiceSettings | None = None,
+        has_screen: bool = False,
         is_patient: bool = False,
     ) -> None:
         self._parts, self._understand, self._order_of = parts, understand, order_of
-        self._caption, self._lang, self._is_patient = caption, lang, is_patient
+        self._caption, self._show_heard, self._lang = caption, heard, lang
+        self._has_screen, self._is_patient = has_screen, is_patient
         self.settings = settings or VoiceSettings()
         self._mouth = Mouth(parts.speech, parts.link, self.settings, lang=lang, is_patient=is_patient)
         self._segmenter = Segmenter(parts.activity, parts.ear.settings)
@@ -237,6 +244,7 @@ class VoiceOperator(Operator):
         self, hearing: Hearing, readings: tuple[Reading, Reading] | None, key: tuple[str, int] | None, time_s: float
     ) -> list[OperatorInput]:
         texts = (hearing.text, hearing.second)
+        self._show_heard(hearing.text or "…")
         orders = [self._order_of(text) for text in texts]
         written = (*texts, *hearing.written)
         if Order.HOLD in (*orders, *map(self._order_of, written), *(order_in(text, HEARD) for text in written)):
@@ -308,13 +316,15 @@ class VoiceOperator(Operator):
         return [Answered(time_s=time_s, question=question.id, answer=answer, operator=NAME)]
 
     def _again(self, turn: _Turn, text: str, time_s: float, waited_s: float) -> list[OperatorInput]:
-        """Asks once more; the second time it counts as not knowing."""
+        """Asks once more; the second time it is left to the screen, or counts as not knowing."""
         if not turn.asked_again:
             turn.asked_again = True
             self._repeat(turn, before=_NOT_UNDERSTOOD)
             return []
         self._turn = None
-        self._say(_GIVEN_UP, Priority.NOTICE)
+        self._say(_TO_SCREEN if self._has_screen else _GIVEN_UP, Priority.NOTICE)
+        if self._has_screen:
+            return []
         answer = Answer(
             reply=Reply.UNSURE, latency_s=waited_s, text=text, by="voice", understood_by="rules",
             standing=Standing.PLAIN,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -21,6 +22,8 @@ _MOST_FRAMES, _FRAMES_AFTER = 3000, 100
 """Of the spectrum that the model takes, 10 ms each; and empty ones after the sound. The window that the model was made
 for is always the longest; a short one takes a tenth of the time, and the text may then repeat itself."""
 _TOKENS_A_SECOND, _LEAST_TOKENS = 6.5, 8
+_AT_ONCE = 4
+"""Tokens that are made before it is looked whether the text repeats itself."""
 
 
 class WhisperRecogniser(Recogniser):
@@ -63,21 +66,33 @@ class WhisperRecogniser(Recogniser):
         most = _LEAST_TOKENS + int(_TOKENS_A_SECOND * len(sound) / RATE_HZ)
         try:
             encoded = self._model.model.encode(ctranslate2.StorageView.from_array(window))
-            found = self._model.model.generate(
-                encoded, [self._prompt], max_length=len(self._prompt) + most, beam_size=1, return_scores=True,
-                return_logits_vocab=True, suppress_blank=True,
-            )[0]  # fmt: skip
+            tokens, score, logits = self._made(encoded, most)
         except RuntimeError as error:
             raise DeviceError(f"the recogniser Whisper failed: {error}") from error
-        text = _once(self._tokens.decode(found.sequences_ids[0], skip_special_tokens=True))
+        text = _once(self._tokens.decode(tokens, skip_special_tokens=True))
         if not text:
             return ()
-        logits = np.asarray(found.logits[0][0], np.float64).ravel()
         odds = np.exp(logits - logits.max())
         odds /= odds.sum()
-        free = Hypothesis(text=text, probability=math.exp(min(0.0, found.scores[0])))
+        free = Hypothesis(text=text, probability=math.exp(min(0.0, score)))
         begins = " ".join(re.findall(r"[a-z']+", text.casefold()))
         return (free, *(self._scored(word, begins, odds) for word in WORDS))
+
+    def _made(self, encoded: Any, most: int) -> tuple[list[int], float, Floats]:
+        """Tokens, the mean logarithm of their probabilities, and the logits of the first.
+
+        With its short window the model seldom ends by itself: it says the same again and again. Short words are twice
+        in the first few tokens already, and no more are made then.
+        """
+        for count in (_AT_ONCE, most):
+            found = self._model.model.generate(
+                encoded, [self._prompt], max_length=len(self._prompt) + count - 1, beam_size=1, return_scores=True,
+                return_logits_vocab=True, suppress_blank=True,
+            )[0]  # fmt: skip
+            tokens: list[int] = found.sequences_ids[0]
+            if len(tokens) < count or _repeats(tokens):
+                break
+        return tokens, found.scores[0], np.asarray(found.logits[0][0], np.float64).ravel()
 
     def _scored(self, word: str, text: str, odds: Floats) -> Hypothesis:
         goes_on = text.startswith(f"{word} ")
@@ -89,7 +104,8 @@ def _once(text: str) -> str:
     parts: list[str] = []
     for part in re.findall(r"[^.,!?]+[.,!?]*", text):
         words = part.split()
-        size = next((n for n in range(1, len(words)) if _repeats([w.casefold() for w in words], n)), len(words))
+        folded = [word.casefold() for word in words]
+        size = next((n for n in range(1, len(words)) if _is_made_of(folded, n)), len(words))
         once = " ".join(words[:size])
         same = [x.strip(" .,!?").casefold() for x in parts]
         if once.strip(" .,!?").casefold() in same:
@@ -98,8 +114,14 @@ def _once(text: str) -> str:
     return " ".join(parts).strip()
 
 
-def _repeats(words: list[str], size: int) -> bool:
-    return all(word == words[at % size] for at, word in enumerate(words))
+def _is_made_of(items: Sequence[object], size: int) -> bool:
+    """Whether it is nothing but its first ``size`` items, again and again."""
+    return all(item == items[at % size] for at, item in enumerate(items))
+
+
+def _repeats(tokens: Sequence[int]) -> bool:
+    """Whether everything has been said twice."""
+    return any(_is_made_of(tokens, size) for size in range(1, len(tokens) // 2 + 1))
 
 
 def _ids(words: Any, text: str) -> list[int]:

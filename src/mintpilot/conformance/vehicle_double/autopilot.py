@@ -49,7 +49,7 @@ class DoubleAutopilot:
         self.flavour = flavour
         self.parameters = Parameters(flavour)
         self.body = Body()
-        self.mode = DoubleMode.HOLD if flavour is Flavour.PX4 else DoubleMode.PILOT
+        self.mode = self._standing = DoubleMode.PILOT
         self.armed = False
         self.faults: frozenset[Fault] = frozenset()
         self.texts: list[str] = []
@@ -75,6 +75,16 @@ class DoubleAutopilot:
         return Fault.POSITION_LOST not in self.faults and self._now_s >= self._position_after_s
 
     @property
+    def knows_global(self) -> bool:
+        """Whether it knows where it is on the earth."""
+        return self.knows_position and Fault.NO_GPS not in self.faults
+
+    @property
+    def may_arm(self) -> bool:
+        """Whether its checks before arming pass, as it tells them: those of the mode that it is in."""
+        return not self._mode_refusal() and not (self.flavour is Flavour.PX4 and self._px4_refusal())
+
+    @property
     def airborne(self) -> bool:
         """Whether it is off the ground."""
         return not self.body.on_ground
@@ -98,11 +108,27 @@ class DoubleAutopilot:
             return "Arming denied: compass variance"
         if not self.knows_position:
             return "Arming denied: no position"
+        refusal = self._mode_refusal()
+        if refusal:
+            return refusal
         refusal = self._px4_refusal() if self.flavour is Flavour.PX4 else self._ardupilot_refusal()
         if refusal:
             return refusal
         self.armed, self._stood_s, self._armed_s, self._climbs = True, None, self._now_s, False
         return ""
+
+    def _mode_refusal(self) -> str:
+        """Why it may not be armed in the mode that it is in. ArduPilot's pilot modes ask for no position."""
+        if self.mode in (DoubleMode.LAND, DoubleMode.RETURN):
+            return f"Mode {self.mode.value} not armable"
+        if self.flavour is Flavour.ARDUPILOT:
+            return "" if self.knows_position or self.mode is DoubleMode.PILOT else "Need Position Estimate"
+        needs = {
+            DoubleMode.PILOT: "No manual control input",
+            DoubleMode.FOLLOW: "" if self._streams() else "No offboard signal",
+            DoubleMode.HOLD: "" if self.knows_global else "No valid global position estimate",
+        }
+        return needs.get(self.mode, "")
 
     def _px4_refusal(self) -> str:
         """A loss of the data link that is acted on must not be there from the beginning."""
@@ -131,8 +157,14 @@ class DoubleAutopilot:
         """Stops the motors; the reason why not, or nothing."""
         if self.airborne:
             return "Disarming denied: not landed"
-        self.armed = False
+        self._stop_motors()
         return ""
+
+    def _stop_motors(self) -> None:
+        """PX4 goes back to the last mode in which it may be armed; ArduPilot stays in LAND."""
+        self.armed = False
+        if self.flavour is Flavour.PX4:
+            self.mode = self._standing
 
     def take_off(self, height_m: float) -> str:
         """Climbs; the reason why not, or nothing."""
@@ -141,6 +173,7 @@ class DoubleAutopilot:
             return "Takeoff denied"
         if self.flavour is Flavour.PX4:
             self._enter(DoubleMode.TAKE_OFF)
+            self._standing = DoubleMode.TAKE_OFF
         n, e, _ = self.body.ned_m
         self._point, self._point_s, self._climbs = None, -math.inf, True
         self._target = Target(ned_m=(n, e, -height_m), fastest_mps=CLIMB_MPS)
@@ -148,15 +181,23 @@ class DoubleAutopilot:
 
     def change_mode(self, mode: DoubleMode) -> str:
         """Goes into a mode; the reason why not, or nothing."""
-        fresh = self._now_s - self._point_s <= BETWEEN_POINTS_S
-        fresh = fresh and self._point_s - self._streaming_s >= BEFORE_OFFBOARD_S
-        if mode is DoubleMode.FOLLOW and self.flavour is Flavour.PX4 and not fresh:
+        px4 = self.flavour is Flavour.PX4
+        if mode is DoubleMode.FOLLOW and px4 and not self._streams():
             return "no offboard signal"
+        if mode in (DoubleMode.HOLD, DoubleMode.RETURN) and px4 and self.armed and not self.knows_global:
+            return "no global position"
         if Fault.PILOT in self.faults and mode is not DoubleMode.PILOT:
             return "the pilot's switch decides"
         self._failsafe = None
         self._enter(mode)
+        if mode not in (DoubleMode.LAND, DoubleMode.RETURN):
+            self._standing = mode
         return ""
+
+    def _streams(self) -> bool:
+        """Whether set-points come, and have come for long enough."""
+        fresh = self._now_s - self._point_s <= BETWEEN_POINTS_S
+        return fresh and self._point_s - self._streaming_s >= BEFORE_OFFBOARD_S
 
     def set_point(self, point: Target) -> None:
         """A set-point came. ArduPilot takes none outside of its fence, nor before a take-off."""
@@ -225,13 +266,13 @@ class DoubleAutopilot:
 
     def _land_when_down(self) -> None:
         if not self.airborne and not self._climbs and self._now_s - self._armed_s > IDLE_S:
-            self.armed = False
+            self._stop_motors()
         if self.airborne or self.mode is not DoubleMode.LAND:
             self._stood_s = None
             return
         self._stood_s = self._now_s if self._stood_s is None else self._stood_s
         if self._now_s - self._stood_s >= LANDED_S:
-            self.armed = False
+            self._stop_motors()
 
     def _fail_safe(self) -> None:
         """Nobody is heard, the battery is low, or it does not know where it is."""
@@ -281,6 +322,9 @@ class DoubleAutopilot:
         self.texts.append(why)
         if action is DoubleMode.PILOT:
             self._enter(DoubleMode.PILOT)
+            return
+        if not self.knows_global:  # Hold needs one, and so does a return: it lands at once
+            self._enter(DoubleMode.LAND)
             return
         self._enter(DoubleMode.HOLD)
         self._failsafe = (self._now_s + self.parameters["COM_FAIL_ACT_T"], action)

@@ -41,6 +41,10 @@ class Fault(StrEnum):
     """The battery drops to a tenth, and two hundredths less each second."""
     NO_GRIPPER = "no-gripper"
     """It has no gripper."""
+    NO_GPS = "no-gps"
+    """It is indoors: it knows its place in the room, and not on the earth."""
+    SLOW_STREAMS = "slow-streams"
+    """Another ground station sets all its messages to four a second."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

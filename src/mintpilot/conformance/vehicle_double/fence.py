@@ -10,6 +10,8 @@ from mintpilot.conformance.vehicle_double.body import Ned
 HOME_DEG, HOME_ALTITUDE_M = (47.397742, 8.545594), 488.0
 """Where the double stands on the earth."""
 METRES_A_DEGREE = 111_319.5
+ORIGIN_M: Ned = (1.5, -2.0, 0.25)
+"""Where the origin of its local frame lies from home: it was set where it first knew its place, not where it stands."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

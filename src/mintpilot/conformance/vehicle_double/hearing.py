@@ -9,7 +9,7 @@ from typing import Any
 from mintpilot.conformance.vehicle_double.autopilot import DoubleAutopilot, DoubleMode
 from mintpilot.conformance.vehicle_double.body import Target
 from mintpilot.conformance.vehicle_double.faults import Fault
-from mintpilot.conformance.vehicle_double.fence import HOME_ALTITUDE_M, fence_of
+from mintpilot.conformance.vehicle_double.fence import HOME_ALTITUDE_M, ORIGIN_M, fence_of
 from mintpilot.conformance.vehicle_double.parameters import Flavour
 from mintpilot.conformance.vehicle_double.speaking import Speaker, mode_numbered
 
@@ -30,14 +30,10 @@ class Hearer:
         speaker: whose rates are set.
         dialect: pymavlink's module of messages.
         send: sends a message.
-
-    Attributes:
-        set_points_s: when set-points came, seconds.
     """
 
     def __init__(self, autopilot: DoubleAutopilot, speaker: Speaker, dialect: Any, send: Send) -> None:
         self._autopilot, self._speaker, self._m, self._send = autopilot, speaker, dialect, send
-        self.set_points_s: list[float] = []
         self._items: dict[int, list[Any]] = {0: [], 1: [], 2: []}
         self._coming: tuple[int, int, list[Any]] | None = None
         self._answers: list[tuple[float, Any]] = []
@@ -76,11 +72,12 @@ class Hearer:
                 pass
 
     def _set_point(self, message: Any) -> None:
-        self.set_points_s.append(self._now_s)
         values = (message.x, message.y, message.z, message.vx, message.vy, message.vz, message.yaw)
         if message.coordinate_frame != LOCAL_NED or not all(math.isfinite(v) for v in values):
             return
-        place = (message.x, message.y, message.z) if not message.type_mask & 7 else self._autopilot.body.ned_m
+        (n, e, d), place = ORIGIN_M, self._autopilot.body.ned_m
+        if not message.type_mask & 7:
+            place = (message.x + n, message.y + e, message.z + d)
         velocity = (message.vx, message.vy, message.vz) if not message.type_mask & 56 else (0.0, 0.0, 0.0)
         heading = None if message.type_mask & 1024 else message.yaw
         self._autopilot.set_point(Target(ned_m=place, velocity=velocity, heading_rad=heading))
@@ -101,9 +98,10 @@ class Hearer:
                 refusal = self._autopilot.change_mode(DoubleMode.RETURN)
             case m.MAV_CMD_DO_GRIPPER if Fault.NO_GRIPPER not in self._autopilot.faults:
                 self._autopilot.gripper, refusal = ("closed" if message.param2 > 0.5 else "open"), ""
+            case m.MAV_CMD_DO_GRIPPER if self._autopilot.flavour is Flavour.PX4:
+                return  # nobody in PX4 answers for a gripper that is not there
             case m.MAV_CMD_SET_MESSAGE_INTERVAL:
-                self._set_rate(int(message.param1), message.param2)
-                refusal = ""
+                refusal = self._set_rate(int(message.param1), message.param2)
             case m.MAV_CMD_REQUEST_MESSAGE:
                 wanted = self._speaker.message(int(message.param1), self._now_s)
                 self._acknowledge(message, m.MAV_RESULT_UNSUPPORTED if wanted is None else m.MAV_RESULT_ACCEPTED)
@@ -112,7 +110,7 @@ class Hearer:
                 return
             case _:
                 pass
-        if refusal:
+        if refusal and message.command != m.MAV_CMD_SET_MESSAGE_INTERVAL:
             self._autopilot.texts.append(refusal)
         results = {None: m.MAV_RESULT_UNSUPPORTED, "": m.MAV_RESULT_ACCEPTED}
         self._acknowledge(message, results.get(refusal, m.MAV_RESULT_TEMPORARILY_REJECTED))
@@ -141,11 +139,15 @@ class Hearer:
             height if math.isfinite(height) and 0 < height < 500 else self._autopilot.parameters["MIS_TAKEOFF_ALT"]
         )
 
-    def _set_rate(self, number: int, interval_us: float) -> None:
+    def _set_rate(self, number: int, interval_us: float) -> str:
+        """Why not: a message that it has not, and PX4 keeps its heartbeat at one a second."""
+        if not self._speaker.has(number) or (number == 0 and self._autopilot.flavour is Flavour.PX4):
+            return "that rate cannot be set"
         if interval_us > 0:
             self._speaker.rates_hz[number] = min(1e6 / interval_us, 50.0)
         elif interval_us < 0:
             self._speaker.rates_hz.pop(number, None)
+        return ""
 
     def _parameter(self, message: Any) -> None:
         parameters = self._autopilot.parameters

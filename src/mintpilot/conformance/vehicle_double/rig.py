@@ -16,7 +16,21 @@ from mintpilot.vehicle.control import link_step
 from mintpilot.vehicle.control_state import ControlState
 from mintpilot.vehicle.course import SetPoint
 from mintpilot.vehicle.envelope import SafetyEnvelope
-from mintpilot.vehicle.signals import Act, Action, Changed, Command, Did, Ended, Fed, LinkEvent, Mode, Seen, Tick, Told
+from mintpilot.vehicle.signals import (
+    Act,
+    Action,
+    Changed,
+    Command,
+    Did,
+    Ended,
+    Fed,
+    LinkEvent,
+    Mode,
+    Seen,
+    Start,
+    Tick,
+    Told,
+)
 
 _Kind = TypeVar("_Kind")
 TICK_S = 0.05
@@ -121,6 +135,7 @@ class Rig:
             "message_s": self.now_s,
             "on_ground": not a.airborne,
             "position_known": a.knows_position,
+            "start": self._start(),
         }
         if a.knows_position:
             place = (pad[0] + e, pad[1] + n, self.envelope.ground_m - d)
@@ -128,6 +143,11 @@ class Rig:
         if beats and Fault.HEARTBEAT not in a.faults:
             changes |= {"heartbeat_s": self.now_s, "armed": a.armed, "mode": MODES[a.mode], "mode_name": a.mode.value}
         self.seen = replace(self.seen, heartbeat_every_s=BEAT_S, **changes)
+
+    def _start(self) -> Start:
+        if self.flavour is Flavour.ARDUPILOT:
+            return Start.GUIDED
+        return Start.SET_POINTS if Fault.NO_GPS in self.autopilot.faults else Start.HOLD
 
     def _step(self, event: LinkEvent) -> None:
         self.state, orders = link_step(self.state, event)
@@ -146,6 +166,8 @@ class Rig:
     def _carry_out(self, order: Act) -> str:
         a = self.autopilot
         match order.action:
+            case Action.STAND_BY:
+                return a.change_mode(DoubleMode.HOLD if self.flavour is Flavour.PX4 else DoubleMode.FOLLOW)
             case Action.ARM:
                 return a.arm()
             case Action.DISARM:

@@ -6,9 +6,10 @@ import multiprocessing
 import select
 import signal
 import socket
+import struct
 import time
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from multiprocessing.connection import Connection
 from types import TracebackType
 from typing import Any, Self
@@ -27,6 +28,14 @@ from mintpilot.simulation.scene import FlightRules, Scene
 STEP_S = 0.01
 READY_S = 60.0
 CLOSING_S = 3.0
+SO_TIMESTAMPNS = 35
+"""Linux: the kernel tells when each packet arrived."""
+STAMP = struct.Struct("@ll")
+ANCILLARY = socket.CMSG_SPACE(STAMP.size)
+SET_POINT = bytes([84, 0, 0])
+"""Id of SET_POSITION_TARGET_LOCAL_NED, where a MAVLink 2 packet has it."""
+GIMBAL = 154
+"""Component id of its gimbal, which sends heartbeats of its own: they say nothing of the autopilot."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -58,7 +67,7 @@ class DoubleState:
     airborne: bool
     gripper: str
     set_points_s: tuple[float, ...]
-    """When set-points came."""
+    """When set-points arrived at its socket."""
     parameters: dict[str, float]
     fence_corners: int
     mission_commands: tuple[int, ...]
@@ -66,6 +75,8 @@ class DoubleState:
     verdict: str
     """What it flew into or out of; empty: nothing."""
     camera_port: int | None = None
+    rates_hz: dict[int, float] = field(default_factory=dict)
+    """Message id → how often it is sent."""
 
 
 class DoubleLoop:
@@ -83,8 +94,12 @@ class DoubleLoop:
         self._hearer = Hearer(self.autopilot, self._speaker, self._m, self._send)
         self._mav = self._m.MAVLink(None, srcSystem=1, srcComponent=1)
         self._mav.robust_parsing = True
+        self._gimbal, self._gimbal_s = self._m.MAVLink(None, srcSystem=1, srcComponent=GIMBAL), 0.0
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         self._socket.setblocking(False)
+        with suppress(OSError):
+            self._socket.setsockopt(socket.SOL_SOCKET, SO_TIMESTAMPNS, 1)
+        self._set_points_s: list[float] = []
         self._out, self._in = Wire(setup.seed), Wire(setup.seed + 1)
         self._begun_s = time.monotonic()
         self._place = Place(setup.scene, setup.rules) if setup.scene is not None else None
@@ -115,6 +130,11 @@ class DoubleLoop:
         self._hearer.due(now_s)
         for message in self._speaker.due(now_s):
             self._send(message)
+        if now_s >= self._gimbal_s:
+            self._gimbal_s = now_s + 1.0
+            m = self._m
+            beat = m.MAVLink_heartbeat_message(m.MAV_TYPE_GIMBAL, m.MAV_AUTOPILOT_INVALID, 0, 0, m.MAV_STATE_ACTIVE, 3)
+            self._send(beat, self._gimbal)
         for packet in self._out.due(now_s):
             with suppress(OSError):
                 self._socket.sendto(packet, ("127.0.0.1", self._setup.port))
@@ -130,12 +150,13 @@ class DoubleLoop:
             armed=a.armed,
             airborne=a.airborne,
             gripper=a.gripper,
-            set_points_s=tuple(self._hearer.set_points_s),
+            set_points_s=tuple(self._set_points_s),
             parameters=dict(a.parameters.values),
             fence_corners=self._hearer.fence_corners,
             mission_commands=self._hearer.mission_commands,
             verdict=self._place.verdict if self._place is not None else "",
             camera_port=self.camera_port,
+            rates_hz=dict(self._speaker.rates_hz),
         )
 
     def close(self) -> None:
@@ -147,9 +168,11 @@ class DoubleLoop:
     def _receive(self, now_s: float) -> None:
         while True:
             try:
-                packet = self._socket.recv(2048)
+                packet, told, _, _ = self._socket.recvmsg(2048, ANCILLARY)
             except OSError:  # nothing more, or nobody listens yet
                 break
+            if packet[7:10] == SET_POINT and Fault.SILENCE not in self.autopilot.faults:
+                self._set_points_s.append(now_s - _waited_s(told))
             self._in.put(packet, now_s, self.autopilot.faults)
         for packet in self._in.due(now_s):
             if Fault.SILENCE in self.autopilot.faults:
@@ -158,9 +181,10 @@ class DoubleLoop:
                 if message.get_type() != "BAD_DATA":
                     self._hearer.hear(message, now_s)
 
-    def _send(self, message: Any) -> None:
-        packet = message.pack(self._mav)
-        self._mav.seq = (self._mav.seq + 1) % 256
+    def _send(self, message: Any, who: Any | None = None) -> None:
+        mav = who or self._mav
+        packet = message.pack(mav)
+        mav.seq = (mav.seq + 1) % 256
         if Fault.SILENCE not in self.autopilot.faults:
             self._out.put(packet, time.monotonic() - self._begun_s, self.autopilot.faults)
 
@@ -233,6 +257,15 @@ def _serve(pipe: Connection, setup: DoubleSetup) -> None:
         return
     finally:
         loop.close()
+
+
+def _waited_s(told: list[tuple[int, int, bytes]]) -> float:
+    """How long ago a packet arrived at the socket, as the kernel tells: this process may have been late to read it."""
+    for level, kind, data in told:
+        if level == socket.SOL_SOCKET and kind == SO_TIMESTAMPNS and len(data) == STAMP.size:
+            seconds, nanoseconds = STAMP.unpack(data)
+            return max(time.time() - float(seconds) - 1e-9 * float(nanoseconds), 0.0)
+    return 0.0
 
 
 def _dialect() -> Any:

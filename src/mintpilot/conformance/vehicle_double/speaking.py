@@ -7,8 +7,9 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 from mintpilot.conformance.vehicle_double.autopilot import DoubleAutopilot, DoubleMode
+from mintpilot.conformance.vehicle_double.body import Ned
 from mintpilot.conformance.vehicle_double.faults import Fault
-from mintpilot.conformance.vehicle_double.fence import HOME_ALTITUDE_M, HOME_DEG, METRES_A_DEGREE
+from mintpilot.conformance.vehicle_double.fence import HOME_ALTITUDE_M, HOME_DEG, METRES_A_DEGREE, ORIGIN_M
 from mintpilot.conformance.vehicle_double.parameters import Flavour
 
 _PX4_MODES = {
@@ -24,6 +25,11 @@ UNASKED_HZ = {
     Flavour.ARDUPILOT: {0: 1.0},
 }
 """Message id → how often it is sent though nobody asked: ArduPilot sends its heartbeat only."""
+ORIGIN = 49
+"""PX4 sends this message only when it is asked for: else once, before anybody listens."""
+SLOWED_HZ = 4.0
+EARTHLY = (24, 33, 49, 242)
+"""What tells places on the earth."""
 
 
 def custom_mode(flavour: Flavour, mode: DoubleMode) -> int:
@@ -51,19 +57,31 @@ class Speaker:
         self._autopilot, self._m = autopilot, dialect
         self.rates_hz = dict(UNASKED_HZ[autopilot.flavour])
         self._due_s: dict[int, float] = {}
+        self._slowed = False
         self._makers: dict[int, Callable[[int], Any]] = {
             0: self._heartbeat, 1: self._sys_status, 24: self._gps, 30: self._attitude, 32: self._local,
             33: self._global, 49: self._origin, 147: self._battery, 148: self._version, 242: self._home,
             245: self._extended, 230 if autopilot.flavour is Flavour.PX4 else 193: self._estimator,
         }  # fmt: skip
 
+    def has(self, number: int) -> bool:
+        """Whether it has such a message."""
+        return number in self._makers
+
     def message(self, number: int, now_s: float) -> Any | None:
         """The message with that id; None where the double has none."""
         maker = self._makers.get(number)
+        if number in EARTHLY and not self._autopilot.knows_global:
+            return None
+        if number == 0 and Fault.HEARTBEAT in self._autopilot.faults:
+            return None
         return maker(int(now_s * 1000)) if maker is not None else None
 
     def due(self, now_s: float) -> Iterator[Any]:
         """What is to be sent now."""
+        if Fault.SLOW_STREAMS in self._autopilot.faults and not self._slowed:
+            self._slowed = True
+            self.rates_hz = {number: min(rate_hz, SLOWED_HZ) for number, rate_hz in self.rates_hz.items()}
         for number, rate_hz in self.rates_hz.items():
             if now_s < self._due_s.get(number, 0.0) or self._withheld(number):
                 continue
@@ -75,10 +93,10 @@ class Speaker:
             yield self._m.MAVLink_statustext_message(2, self._autopilot.texts.pop(0).encode()[:50])
 
     def _withheld(self, number: int) -> bool:
-        faults = self._autopilot.faults
-        silent = (33, 24) if self._autopilot.flavour is Flavour.PX4 else (32, 33, 24)  # PX4 goes on guessing
-        blind = not self._autopilot.knows_position and number in silent
-        return blind or (number == 0 and Fault.HEARTBEAT in faults)
+        px4 = self._autopilot.flavour is Flavour.PX4
+        blind = not self._autopilot.knows_position and number == 32 and not px4  # PX4 goes on guessing
+        blind |= px4 and number == ORIGIN
+        return blind
 
     def _heartbeat(self, _: int) -> Any:
         m, a = self._m, self._autopilot
@@ -95,12 +113,9 @@ class Speaker:
         m, a = self._m, self._autopilot
         sensors = m.MAV_SYS_STATUS_SENSOR_3D_GYRO | m.MAV_SYS_STATUS_SENSOR_3D_ACCEL | m.MAV_SYS_STATUS_SENSOR_3D_MAG
         every = sensors | m.MAV_SYS_STATUS_SENSOR_GPS | m.MAV_SYS_STATUS_PREARM_CHECK
-        # ArduPilot's checks pass some time before it has a position.
-        good = (
-            every
-            if a.knows_position
-            else sensors | (m.MAV_SYS_STATUS_PREARM_CHECK if a.flavour is Flavour.ARDUPILOT else 0)
-        )
+        # ArduPilot's checks pass some time before it has a position, in a pilot's mode.
+        good = sensors | (m.MAV_SYS_STATUS_PREARM_CHECK if a.may_arm else 0)
+        good |= m.MAV_SYS_STATUS_SENSOR_GPS if a.knows_global else 0
         return m.MAVLink_sys_status_message(
             every, every, good, 200, 15200, 900, round(a.battery * 100), 0, 0, 0, 0, 0, 0
         )
@@ -127,7 +142,8 @@ class Speaker:
 
     def _local(self, ms: int) -> Any:
         a = self._autopilot
-        return self._m.MAVLink_local_position_ned_message(ms, *a.reported_ned(), *a.body.velocity)
+        place = [p - o for p, o in zip(a.reported_ned(), ORIGIN_M, strict=True)]
+        return self._m.MAVLink_local_position_ned_message(ms, *place, *a.body.velocity)
 
     def _attitude(self, ms: int) -> Any:
         return self._m.MAVLink_attitude_message(ms, 0.0, 0.0, self._autopilot.body.heading_rad, 0.0, 0.0, 0.0)
@@ -153,8 +169,8 @@ class Speaker:
         )
 
     def _origin(self, _: int) -> Any:
-        latitude, longitude = (int(v * 1e7) for v in HOME_DEG)
-        return self._m.MAVLink_gps_global_origin_message(latitude, longitude, int(HOME_ALTITUDE_M * 1000))
+        latitude, longitude, down = self._on_earth(ORIGIN_M)
+        return self._m.MAVLink_gps_global_origin_message(latitude, longitude, int((HOME_ALTITUDE_M - down) * 1000))
 
     def _version(self, _: int) -> Any:
         m = self._m
@@ -167,7 +183,11 @@ class Speaker:
         return m.MAVLink_autopilot_version_message(able, 0x010F0000, 0, 0, 0, none, none, none, 0, 0, 42)
 
     def _place(self) -> tuple[int, int, float]:
-        n, e, d = self._autopilot.reported_ned()
+        return self._on_earth(self._autopilot.reported_ned())
+
+    @staticmethod
+    def _on_earth(place: Ned) -> tuple[int, int, float]:
+        n, e, d = place
         latitude, longitude = HOME_DEG
         east_deg = e / (METRES_A_DEGREE * math.cos(math.radians(latitude)))
         return int((latitude + n / METRES_A_DEGREE) * 1e7), int((longitude + east_deg) * 1e7), d

@@ -4,6 +4,7 @@ import { Card } from "./card.js";
 import { $, make } from "./dom.js";
 import { Link } from "./link.js";
 import { MapView } from "./map.js";
+import { Microphone } from "./microphone.js";
 import { Replay } from "./replay.js";
 import { Tell } from "./tell.js";
 import { showTree } from "./tree.js";
@@ -18,6 +19,7 @@ const map = new MapView($("map"), (spot) => card.choose(spot), (found) => tell.p
 const card = new Card(link, map);
 const tell = new Tell(link, map);
 const replay = new Replay(link);
+const microphone = new Microphone(link);
 const last = {}; // the newest of each pane, to say it again in another language
 
 const on = (pane, show) => link.addEventListener(pane, (event) => {
@@ -40,6 +42,8 @@ on("flown", ({ from, items }) => map.addFlown(from, items.map((i) => i.at)));
 on("steps", ({ data }) => showSteps(data));
 on("tree", ({ data }) => showTree(data));
 on("question", ({ data }) => card.set(data));
+on("microphone", ({ data }) => microphone.caption(data));
+on("spoken", ({ data, payload }) => microphone.play(data.n, payload));
 on("attention", ({ data }) => card.attend(data.to));
 on("camera", ({ data, payload }) => picture($("picture"), payload, data.boxes, say("camera")).then(() => { $("camera").hidden = false; }));
 on("log", ({ from, items }) => showLog(from, items));
@@ -68,6 +72,7 @@ function showSeat(s) {
   for (const field of $("say").elements) field.disabled = !s.seated;
   card.setMay(s.seated);
   tell.setMay(s.seated);
+  microphone.setMay(s.seated);
   replay.draw();
 }
 
@@ -135,6 +140,7 @@ async function showEvidence(i, data, blob) {
 }
 
 function showLink(state) {
+  microphone.linked(state === "up");
   const box = $("link");
   if (state === "lost" && (last.mission?.data.verdict || replay.shown)) state = "up"; // the mission is over, and the program with it
   box.className = state;
@@ -157,6 +163,7 @@ function use(lang) {
   card.draw();
   tell.draw();
   replay.draw();
+  microphone.draw();
   if (last.mission) showMission(last.mission.data);
   if (last.seat) showSeat(last.seat.data);
   if (last.steps) showSteps(last.steps.data);

@@ -1,6 +1,7 @@
 // The link to the drone: one WebSocket that comes back by itself and loses no command.
 
 const QUIET_MS = 3000; // the server says something every second
+const MOST_WAITING = 64 * 1024; // bytes of sound
 const token = location.hash.slice(1);
 
 const browser = (() => {
@@ -34,6 +35,9 @@ export class Link extends EventTarget {
     this.#waiting.push(message);
     if (this.up) this.#socket.send(JSON.stringify(message));
   }
+
+  // Sound is worth nothing later: what the link cannot take now is left out.
+  sound(buffer) { if (this.up && this.#socket.bufferedAmount < MOST_WAITING) this.#socket.send(buffer); }
 
   #tell(kind, detail) { this.dispatchEvent(new CustomEvent(kind, { detail })); }
 
