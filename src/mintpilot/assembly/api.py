@@ -66,7 +66,7 @@ def plan_mission(
         MissingPartError: the language model needs a part that is not installed.
     """
     file, folder = _opened(mission, base)
-    with talk_for(file.language, llm=llm, lang=lang) as talk:
+    with talk_for(file.language, llm=llm, lang=lang, world=file.world) as talk:
         arguments = _arguments(file, strategy, strategy_arguments)
         choices = Choices(
             strategy=strategy, strategy_arguments=arguments, planner=planner, vehicle=VehicleChoice.KINEMATIC
@@ -179,7 +179,7 @@ def run_mission(
         calibration=_calibration(file, folder) if perception in (None, file.perception.use) else None,
     )
     make_planner(planner)  # a wrong name, or a file that cannot be used, is told before anything is kept
-    with talk_for(file.language, llm=llm, lang=lang) as talk:
+    with talk_for(file.language, llm=llm, lang=lang, world=file.world) as talk:
         world = build_world(file, base=folder, seed=seed, parse=talk.parse)
         several = operator if isinstance(operator, tuple) else (operator,)
         people = tuple(_operator(one, world, file, talk) for one in several)

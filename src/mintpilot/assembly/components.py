@@ -110,6 +110,7 @@ class PartsBesideVehicle:
     world: World
     choices: Choices
     lang: str
+    names: tuple[tuple[str, str], ...]
 
     def __call__(self) -> DeliberationParts:
         """The parts; questions are worded in the mission's language by template, and bettered by the loop.
@@ -118,7 +119,7 @@ class PartsBesideVehicle:
         """
         from mintpilot.mission.rehearsal import begin
 
-        parts = deliberation_parts(self.world, self.choices, Talk(lang=self.lang))
+        parts = deliberation_parts(self.world, self.choices, Talk(lang=self.lang, names=dict(self.names)))
         with suppress(InfeasibleError):
             begin(parts, self.world.map).deliberated()
         return parts
@@ -241,7 +242,9 @@ class _Components(AbstractContextManager[MissionComponents]):
         before = builder.snapshot() if builder is not None else None
         vehicle = make_vehicle(world, choices.address, accept_failsafes=choices.accept_failsafes, known=before)
         self._stack.callback(vehicle.close)
-        beside = PartsBesideVehicle(world=world, choices=choices, lang=self._talk.lang)
+        beside = PartsBesideVehicle(
+            world=world, choices=choices, lang=self._talk.lang, names=tuple(self._talk.names.items())
+        )
         source: MapSource = GivenMap(world.map)
         camera: Camera | None = None
         if builder is not None:
@@ -351,6 +354,7 @@ class _Components(AbstractContextManager[MissionComponents]):
             strategy_name=strategy_label(self._choices.strategy, self._choices.strategy_arguments),
             planner_name=self._choices.planner,
             language=self._talk.lang,
+            names=tuple(self._talk.names.items()),
             language_model=self._talk.model_name,
             seed=self._world.seed,
         )

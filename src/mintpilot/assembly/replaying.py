@@ -62,7 +62,7 @@ def parts_of(started: MissionStarted) -> DeliberationParts:
         metric=make_metric(asking.impact_metric),
         objective=load("objective", asking.objective)(),
         groups=started.groups,
-        word=Talk(lang=started.language).word,
+        word=Talk(lang=started.language, names=dict(started.names)).word,
     )
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
 
@@ -17,6 +17,7 @@ from mintpilot.core.tree import Mint
 from mintpilot.elicitation.wording import word_question
 from mintpilot.mission.rewording import Improve
 from mintpilot.mission_file.schema import LanguageSpec
+from mintpilot.mission_file.schema_world import World, names_in
 from mintpilot.wording.rewording import ModelWording, Wording
 from mintpilot.wording.translating import ENGLISH, wording_for
 
@@ -35,16 +36,26 @@ class Talk(AbstractContextManager["Talk"]):
         lang: in which questions are asked: ``en``, ``de``, ``fr`` or ``es``.
         model: who may help; None: nobody.
         name: the model's registered name.
+        names: what the mission file calls things in that language, by their English words.
 
     Raises:
         UnknownNameError: another language.
     """
 
-    def __init__(self, *, lang: str = ENGLISH, model: LanguageModel | None = None, name: str = TEMPLATE) -> None:
+    def __init__(
+        self,
+        *,
+        lang: str = ENGLISH,
+        model: LanguageModel | None = None,
+        name: str = TEMPLATE,
+        names: Mapping[str, str] | None = None,
+    ) -> None:
         self.lang = lang
+        self.names = dict(names or {})
+        """What the mission file calls things in that language, by their English words."""
         self.model_name = name
         self._model = None if model is None else GuardedModel(model, name)
-        worded = wording_for(word_question, language=lang)
+        worded = wording_for(word_question, language=lang, names=names)
         self.word: Wording = worded
         """Words a cut at once, by template."""
         self.improve: Improve | None = None
@@ -147,13 +158,20 @@ class ModelProposer(Proposer):
         return propose_cuts(self.model, mint).queries
 
 
-def talk_for(spec: LanguageSpec, *, llm: str | LanguageModel | None = None, lang: str | None = None) -> Talk:
+def talk_for(
+    spec: LanguageSpec,
+    *,
+    llm: str | LanguageModel | None = None,
+    lang: str | None = None,
+    world: World | None = None,
+) -> Talk:
     """The language of a mission: as its file says, where nobody says otherwise.
 
     Args:
         spec: the mission file's part about language.
         llm: the name of a language model, or one that was made already; None: that of the file.
         lang: the language in which questions are asked; None: that of the file.
+        world: of the file: it may name things in that language.
 
     Raises:
         UnknownNameError: nobody registered that model, or the language is not known.
@@ -161,9 +179,10 @@ def talk_for(spec: LanguageSpec, *, llm: str | LanguageModel | None = None, lang
         MissingPartError: the model needs a part that is not installed.
     """
     spoken = lang if lang is not None else spec.lang
+    names = names_in(world, spoken)
     wording_for(word_question, language=spoken)  # a wrong language is told before a model is loaded
     if llm is not None and not isinstance(llm, str):
-        return Talk(lang=spoken, model=llm, name=type(llm).__name__)
+        return Talk(lang=spoken, model=llm, name=type(llm).__name__, names=names)
     name = llm if llm is not None else spec.model
     made = load("language", name)
-    return Talk(lang=spoken, model=None if name == TEMPLATE else made(), name=name)
+    return Talk(lang=spoken, model=None if name == TEMPLATE else made(), name=name, names=names)

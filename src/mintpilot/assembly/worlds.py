@@ -20,7 +20,7 @@ from mintpilot.core.task import SLOW, KeepAway, Reference, Task
 from mintpilot.mapping.listed_objects import with_solid_objects
 from mintpilot.mission_file.ruling import rules_of
 from mintpilot.mission_file.schema import MissionFile
-from mintpilot.mission_file.schema_base import attributes_of, place_of
+from mintpilot.mission_file.schema_base import attributes_of, in_english, place_of
 from mintpilot.mission_file.schema_core import asking_of, correlations_of, limits_of, mission_of, task_of, truths_of
 from mintpilot.mission_file.schema_map import load_bare_map, map_of
 from mintpilot.mission_file.schema_scene import ClosedRoomSpec, PersonSpec, SceneSpec
@@ -276,7 +276,7 @@ def listed_words(world: MapWorld | ScenarioWorld | SceneWorld | SeenWorld) -> fr
         return frozenset()
     objects = world.objects
     said = [o.label for o in objects] + [v for o in objects for values in o.attributes.values() for v in values]
-    said += [room.description for room in world.rooms] + [region.description for region in world.regions]
+    said += [in_english(one.description) for one in (*world.rooms, *world.regions)]
     return frozenset(word for text in said for word in text.lower().replace("_", " ").split())
 
 

@@ -29,6 +29,8 @@ class MissionStarted:
     strategy: str
     language: str = "en"
     """In which questions are asked."""
+    names: tuple[tuple[str, str], ...] = ()
+    """What the mission file calls things in that language: English words, and the same."""
     language_model: str = "template"
     """Who words them: a registered name; ``template``: no model."""
     groups: tuple[CorrelationGroup, ...] = ()
@@ -158,6 +160,14 @@ class FactsChanged:
     """All that was told so far, oldest first."""
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StopsDone:
+    """The drone has done another stop."""
+
+    stops: tuple[str, ...]
+    """Ids of all that were done so far, sorted."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Stepped:
     """One step of the mission: what happened, and a digest of what it made the mission do."""
@@ -207,6 +217,7 @@ Event: TypeAlias = (
     | OrderTaken
     | QuestionTimed
     | FactsChanged
+    | StopsDone
     | Stepped
     | Noticed
     | Timed

@@ -60,6 +60,7 @@ class MissionComponents:
     strategy_name: str = "mint"
     planner_name: str = "grid"
     language: str = "en"
+    names: tuple[tuple[str, str], ...] = ()
     language_model: str = "template"
     seed: int | None = None
 
@@ -83,6 +84,7 @@ class MissionComponents:
             seed=self.seed,
             strategy=self.strategy_name,
             language=self.language,
+            names=self.names,
             language_model=self.language_model,
             groups=self.parts.groups,
             planner=self.planner_name,

@@ -7,7 +7,7 @@ import inspect
 import textwrap
 from collections.abc import Mapping
 from itertools import pairwise
-from typing import Annotated, Any, TypeAlias, TypeVar
+from typing import Annotated, Any, Literal, TypeAlias, TypeVar
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, GetJsonSchemaHandler, WithJsonSchema
 from pydantic.json_schema import JsonSchemaValue
@@ -80,6 +80,10 @@ PartName: TypeAlias = Annotated[
 ThinkWords: TypeAlias = Annotated[str, Field(pattern=r"^\d+(\.\d+)?(\.\.\d+(\.\d+)?)?$")]
 """``5``, or ``2..8``: a time, or two bounds between which it is drawn evenly, seconds."""
 Words: TypeAlias = Annotated[str, Field(min_length=1, max_length=1000)]
+Spoken: TypeAlias = Literal["en", "de", "fr", "es"]
+Described: TypeAlias = Words | Annotated[dict[Spoken, Words], Field(min_length=1)]
+"""Words, or the same in several languages: ``{en: the grey smoke, de: der graue Rauch}``. Instructions and answers of
+other languages than the questions' name a thing by its English words, or the first ones where there are none."""
 Point3: TypeAlias = Annotated[tuple[float, float, float], BeforeValidator(_as_tuple)]
 """``[x, y, z]`` in metres."""
 Point2: TypeAlias = Annotated[tuple[float, float], BeforeValidator(_as_tuple)]
@@ -125,3 +129,8 @@ def attributes_of(attributes: Mapping[str, tuple[str, ...]]) -> tuple[Attribute,
 def place_of(place: tuple[float, ...], layer_m: float) -> Vec3:
     """A place with its height; one given as ``[x, y]`` lies at ``layer_m``."""
     return (place[0], place[1], place[2] if len(place) == 3 else layer_m)
+
+
+def in_english(described: Described) -> str:
+    """The words that the map has for it."""
+    return described if isinstance(described, str) else described.get("en") or next(iter(described.values()))

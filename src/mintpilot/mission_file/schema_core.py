@@ -23,7 +23,7 @@ from mintpilot.core.plan import Look, VehicleLimits
 from mintpilot.core.task import Action, Reference, SubGoal, Task
 from mintpilot.mission_file.geodetic_places import georeference_of
 from mintpilot.mission_file.schema import GoalSpec, MissionFile
-from mintpilot.mission_file.schema_base import attributes_of, place_of
+from mintpilot.mission_file.schema_base import attributes_of, in_english, place_of
 from mintpilot.mission_file.schema_world import MapWorld
 
 PRICED_FLIGHTS = 10
@@ -109,7 +109,7 @@ def task_of(file: MissionFile, *, layer_m: float = 0.0) -> Task | None:
         return None
     rooms = {room.id: room for room in file.world.rooms} if isinstance(file.world, MapWorld) else {}
     viewpoints = {name: place_of(room.viewpoint_m, layer_m) for name, room in rooms.items()}
-    words = {name: room.description for name, room in rooms.items()}
+    words = {name: in_english(room.description) for name, room in rooms.items()}
     return Task(
         instruction=file.instruction,
         subgoals=tuple(

@@ -15,7 +15,7 @@ from mintpilot.mapping.occupancy import load_ros_map
 from mintpilot.mapping.outline import cells_in_box, cells_in_polygon, regions_from_mask, within_fence
 from mintpilot.mapping.reachable import cropped, in_part
 from mintpilot.mission_file.schema import PriorsSpec
-from mintpilot.mission_file.schema_base import attributes_of, place_of
+from mintpilot.mission_file.schema_base import attributes_of, in_english, place_of
 from mintpilot.mission_file.schema_world import MapWorld, ObjectSpec, RegionSpec, RoomSpec
 
 REACH_M = 3.0
@@ -102,7 +102,7 @@ def regions_of(
     kind = RegionKind(spec.kind)
     if spec.mask is not None:
         found = regions_from_mask(
-            bare, base / spec.mask, name=spec.id, description=spec.description, prior_passable=prior
+            bare, base / spec.mask, name=spec.id, description=in_english(spec.description), prior_passable=prior
         )
         if not found:
             raise MapError(f"mask '{spec.mask}' marks no cell that is not a wall; paint the areas black")
@@ -129,7 +129,7 @@ def regions_of(
             cells=cells,
             passable=passable,
             prior_passable=prior,
-            description=spec.description,
+            description=in_english(spec.description),
         ),
     )
 
@@ -142,7 +142,7 @@ def room_of(spec: RoomSpec, layer_m: float, priors: PriorsSpec) -> Room:
         viewpoint_m=place_of(spec.viewpoint_m, layer_m),
         occupied=knowledge(spec.occupied),
         prior_occupied=priors.occupied if spec.prior_occupied is None else spec.prior_occupied,
-        description=spec.description,
+        description=in_english(spec.description),
     )
 
 

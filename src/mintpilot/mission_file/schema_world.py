@@ -9,6 +9,7 @@ from pydantic import Discriminator, Field, Tag
 from mintpilot.mission_file.schema_base import (
     Attributes,
     BoxSpec,
+    Described,
     Name,
     NotNegative,
     Place,
@@ -19,6 +20,7 @@ from mintpilot.mission_file.schema_base import (
     Several,
     Spec,
     Words,
+    in_english,
 )
 from mintpilot.mission_file.schema_scene import SceneSpec
 
@@ -79,7 +81,7 @@ class RegionSpec(Spec):
 
     id: Name
     """Unique name, e.g. `smoke-1`. With a mask of several areas: `NAME-1`, `NAME-2` and so on."""
-    description: Words
+    description: Described
     """What the operator can see, with its article: `the grey smoke near the gate`."""
     kind: Literal["smoke", "door", "area"] = "area"
     """What it is."""
@@ -131,7 +133,7 @@ class RoomSpec(Spec):
 
     id: Name
     """Unique name, e.g. `room-1`."""
-    description: Words
+    description: Described
     """What the operator can see, with its article: `the closed room with the brown door`."""
     door: BoxSpec
     """The closed door."""
@@ -214,3 +216,11 @@ World: TypeAlias = Annotated[
     | Annotated[SeenWorld, Tag("SeenWorld")],
     Discriminator(_kind_of_world),
 ]
+
+
+def names_in(world: World | None, language: str) -> dict[str, str]:
+    """What the file calls regions and rooms in that language, by their English words; only where it says so."""
+    if not isinstance(world, MapWorld):
+        return {}
+    said = ((in_english(d), d) for d in (one.description for one in (*world.regions, *world.rooms)))
+    return {english: d[lang] for english, d in said if isinstance(d, dict) for lang in d if lang == language}

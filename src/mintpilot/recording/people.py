@@ -6,6 +6,7 @@ from mintpilot.core.mission import Sight
 from mintpilot.core.observation import PERSON
 from mintpilot.recording.frames import FRAMES, frame_name
 from mintpilot.recording.record import LookRecord, MissionRecord, Part, SeenRecord
+from mintpilot.recording.spoken import PERSONS, SIGHTS
 
 
 class PeopleSummary(Part):
@@ -42,9 +43,13 @@ def people_lines(record: MissionRecord) -> list[str]:
     return lines
 
 
-def look_line(look: LookRecord) -> str:
+def look_line(look: LookRecord, lang: str = "en") -> str:
     """What a look into a room came to, as a clause."""
     person = look.what == PERSON
+    if lang in SIGHTS:
+        what = PERSONS[lang][look.count > 1] if person else look.what
+        said = SIGHTS[lang][look.result].format(count=look.count, what=what, share=f"{look.seen or 0:.0%}").strip()
+        return f"{look.text}: {': '.join([said, *([', '.join(look.pictures)] if look.pictures else [])])}"
     match look.result:
         case Sight.UNSEEN:
             found = f"it could not be seen (through {look.seen or 0:.0%} of the doorway)"

@@ -6,6 +6,7 @@ import base64
 from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
@@ -17,9 +18,9 @@ from mintpilot.core.query import Reply
 from mintpilot.recording.frames import FRAMES, FrameStore, crop_jpeg
 from mintpilot.recording.people import look_line, people_lines, people_seen
 from mintpilot.recording.record import GapRecord, MissionRecord, QuestionRecord, SeenRecord
+from mintpilot.recording.spoken import heading, outcome_words
 from mintpilot.recording.tree_drawing import percent
 from mintpilot.recording.tree_svg import tree_svg
-from mintpilot.recording.words import OUTCOME_WORDS
 
 MAX_PICTURES = 18
 """Close-ups shown; what bears on a gap comes first."""
@@ -81,13 +82,14 @@ def report_html(record: MissionRecord, folder: Path) -> str:
         record=record,
         gaps=weightiest_first(record.gaps),
         tone="good" if record.outcome is Outcome.SUCCESS else "stopped" if record.outcome in _STOPPED else "bad",
-        headline=OUTCOME_WORDS[record.outcome],
+        headline=outcome_words(record.outcome, record.language),
+        heading=partial(heading, lang=record.language),
         reply_words=reply_words,
         consequence=consequence,
         plot=_data_uri(plot.read_bytes(), "image/svg+xml") if plot.is_file() else "",
         tree=Markup(tree_svg(record.tree)) if record.tree else "",  # made here of escaped text
         pictures=pictures(record, folder),
-        people=[*people_lines(record), *map(look_line, record.looks)],
+        people=[*people_lines(record), *(look_line(look, record.language) for look in record.looks)],
         slowest_s=max(record.timings_s.values(), default=0.0),
         settings=list(_flat(record.settings)),
     )

@@ -14,8 +14,9 @@ from mintpilot.core.query import Reply
 from mintpilot.recording.people import look_line, people_lines
 from mintpilot.recording.record import GapRecord, MissionRecord, QuestionRecord
 from mintpilot.recording.report import consequence, number, reply_words, weightiest_first
+from mintpilot.recording.spoken import heading, outcome_words
 from mintpilot.recording.tree_drawing import tree_text
-from mintpilot.recording.words import OUTCOME_WORDS, printable
+from mintpilot.recording.words import printable
 
 WIDTH = 100
 """Columns that the report fits into."""
@@ -44,9 +45,9 @@ def print_report(record: MissionRecord, console: Console) -> None:
 def _head(record: MissionRecord) -> RenderableType:
     styles = {Outcome.SUCCESS: "bold green", Outcome.PARTIAL: "bold yellow"}
     style = styles.get(record.outcome, "bold red")
-    lines = [Text(OUTCOME_WORDS[record.outcome].upper(), style), _plain(record.reason)]
+    lines = [Text(outcome_words(record.outcome, record.language).upper(), style), _plain(record.reason)]
     if record.instruction:
-        lines.append(_plain(f"Order: {record.instruction}", "dim"))
+        lines.append(_plain(f"{heading('Order', record.language)}: {record.instruction}", "dim"))
     return Group(Text(), *lines)
 
 
@@ -56,7 +57,7 @@ def _saw(record: MissionRecord) -> RenderableType:
         name = seen.state if seen.kind == "object" else seen.kind
         kinds[name] = kinds.get(name, 0) + 1
     things = ", ".join(f"{count} {_plural(name, count)}" for name, count in sorted(kinds.items()))
-    return _section("What it saw", [_plain(f"{record.frames} pictures: {things or 'nothing was found'}.")])
+    return _section(record, "What it saw", [_plain(f"{record.frames} pictures: {things or 'nothing was found'}.")])
 
 
 def _plural(name: str, count: int) -> str:
@@ -67,9 +68,11 @@ def _plural(name: str, count: int) -> str:
 
 def _gaps(record: MissionRecord, width: int) -> RenderableType:
     if not record.gaps:
-        return _section("What it did not know", [Text("Nothing that bears on the task was unknown.")])
+        return _section(record, "What it did not know", [Text("Nothing that bears on the task was unknown.")])
     return _section(
-        "What it did not know", [line for gap in weightiest_first(record.gaps) for line in _gap(gap, width)]
+        record,
+        "What it did not know",
+        [line for gap in weightiest_first(record.gaps) for line in _gap(gap, width)],
     )
 
 
@@ -93,8 +96,8 @@ def _gap(gap: GapRecord, width: int) -> Iterator[Text]:
 
 def _asked(record: MissionRecord) -> RenderableType:
     if not record.questions:
-        return _section("What it asked", [Text("Nothing.")])
-    return _section("What it asked", [line for q in record.questions for line in _question(q)])
+        return _section(record, "What it asked", [Text(heading("Nothing.", record.language))])
+    return _section(record, "What it asked", [line for q in record.questions for line in _question(q)])
 
 
 def _question(question: QuestionRecord) -> Iterator[Text]:
@@ -115,7 +118,7 @@ def _decided(record: MissionRecord) -> RenderableType:
         lines.extend(Text(line, no_wrap=True, overflow="ellipsis") for line in tree)
     if record.certificate is not None:
         lines.append(_plain(record.certificate.text))
-    return _section("How it decided", lines or [Text("It was not decided.")])
+    return _section(record, "How it decided", lines or [Text("It was not decided.")])
 
 
 def _flown(record: MissionRecord) -> RenderableType:
@@ -133,16 +136,18 @@ def _flown(record: MissionRecord) -> RenderableType:
     lines.extend(_plain(line) for line in people_lines(record))
     lines.extend(_plain(f"rule {_KEPT[rule.kept]}: {rule.text}", _RULE_STYLES[rule.kept]) for rule in record.rules)
     lines.extend(_plain(f"done after {number(one.at_s, 's')}: {one.text}") for one in record.achieved)
-    lines.extend(_plain(look_line(one), "yellow" if one.result is Sight.UNSEEN else "") for one in record.looks)
+    lines.extend(
+        _plain(look_line(one, record.language), "yellow" if one.result is Sight.UNSEEN else "") for one in record.looks
+    )
     lines.extend(_plain(f"left undone: {one.text} ({one.reason})", "yellow") for one in record.left)
     lines.extend(_plain(f"! {notice.text}", "yellow") for notice in record.notices)
     if record.run_dir:
         lines.append(Text(f"Report: {printable(record.run_dir)}/report.html", "bold", overflow="fold"))
-    return _section("What it flew", lines)
+    return _section(record, "What it flew", lines)
 
 
-def _section(title: str, lines: list[RenderableType] | list[Text]) -> RenderableType:
-    return Group(Text(), Text(title, "bold underline"), *lines)
+def _section(record: MissionRecord, title: str, lines: list[RenderableType] | list[Text]) -> RenderableType:
+    return Group(Text(), Text(heading(title, record.language), "bold underline"), *lines)
 
 
 def _indented(text: str, width: int, style: str = "") -> Text:

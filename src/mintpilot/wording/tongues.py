@@ -7,7 +7,7 @@ that no other case is needed but the one after *near*.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from mintpilot.core.gap import PASSABLE, PRESENT
 
@@ -17,6 +17,8 @@ class Tongue:
     """What is needed to ask in one language."""
 
     name: str
+    names: Mapping[str, str] = field(default_factory=dict)
+    """What the mission itself calls things: English words → the same."""
     articles: Mapping[str, str]
     """Gender → definite article, nominative."""
     near: Mapping[str, str]

@@ -23,12 +23,13 @@ ENGLISH = "en"
 _NEAR = re.compile(r" (?:near|next to|beside|by|close to|with) (?=the )")
 
 
-def translated(template: Wording, language: str) -> Wording:
+def translated(template: Wording, language: str, names: Mapping[str, str] | None = None) -> Wording:
     """The template, speaking that language.
 
     Args:
         template: words a cut in English.
         language: ``en``, ``de``, ``fr`` or ``es``.
+        names: what the mission itself calls things there, by their English words.
 
     Raises:
         UnknownNameError: another language.
@@ -37,7 +38,7 @@ def translated(template: Wording, language: str) -> Wording:
         return template
     if language not in TONGUES:
         raise UnknownNameError("language", language, (ENGLISH, *TONGUES))
-    return TranslatedWording(template=template, tongue=TONGUES[language])
+    return TranslatedWording(template=template, tongue=replace(TONGUES[language], names=names or {}))
 
 
 def wording_for(
@@ -46,6 +47,7 @@ def wording_for(
     language: str = ENGLISH,
     model: LanguageModel | None = None,
     notice: Callable[[str], None] = lambda _: None,
+    names: Mapping[str, str] | None = None,
 ) -> Wording:
     """How questions are worded: by template in the operator's language, in English improved by a model if there is one.
 
@@ -55,12 +57,13 @@ def wording_for(
             English wordings can be checked.
         model: who may propose better words; None or `NoModel`: nobody.
         notice: told once when the model fails.
+        names: see `translated`.
 
     Raises:
         UnknownNameError: another language.
     """
     if model is None or isinstance(model, NoModel) or language != ENGLISH:
-        return translated(template, language)
+        return translated(template, language, names)
     wording = ModelWording(template=template, model=model, notice=notice)
     wording.warm()
     return wording
@@ -91,7 +94,8 @@ def noun_phrase(english: str, tongue: Tongue) -> str:
     """``the grey smoke near the gate`` in that language; in quotation marks and English where a word is not known."""
     named, places = split_places(english)
     parts = _NEAR.split(named)
-    said = [_nominal(part, tongue, is_place=i > 0) for i, part in enumerate(parts)]
+    known = tongue.names.get(named)
+    said = [known] if known else [_nominal(part, tongue, is_place=i > 0) for i, part in enumerate(parts)]
     said += [PLACES[tongue.name].get(place, "") for place in places]
     return " ".join(said) if all(said) else f"“{english}”"
 
