@@ -172,7 +172,8 @@ def _best(problem, formulas, goals, areas, blocked):
         return frozenset(found)
 
     start = (0, 0)
-    first = after({tuple(("now", f) for f in formulas)}, frozenset(), start)
+    begins = frozenset(name for name in names if areas[name][start])  # where it starts is known exactly
+    first = after({tuple(ltlf.progressed(("now", f), begins) for f in formulas)}, frozenset(), start)
     heap, seen, ticks = [(0.0, 0, start, 0, first)], set(), itertools.count(1)
     while heap:
         cost, _, cell, done, rules = heapq.heappop(heap)

@@ -11,7 +11,7 @@ import pytest
 
 from mintpilot.core.errors import InputError, MissingPartError
 from mintpilot.core.geometry import Floats
-from mintpilot.voice.audio import clean, from_pcm, read_wav, write_wav
+from mintpilot.voice.audio import clean, from_pcm, read_wav, trimmed, write_wav
 from mintpilot.voice.devices import link_to
 from mintpilot.voice.doubles import ActivityDouble, RecogniserDouble, SpeechDouble
 from mintpilot.voice.echo import FRAME, EchoCanceller
@@ -112,6 +112,13 @@ def test_two_people_at_once_are_not_sure_or_not_read_alike() -> None:
 )
 def test_units_are_said_in_words(text: str, lang: str, said: str) -> None:
     assert aloud(text, lang) == said
+
+
+def test_silence_around_speech_is_cut_and_silence_alone_is_left() -> None:
+    quiet, speech = np.zeros(RATE_HZ), 0.3 * np.ones(1000)
+    assert 1000 <= len(trimmed(np.concatenate([quiet, speech, quiet]))) <= 1000 + RATE_HZ // 10
+    assert len(trimmed(quiet)) == RATE_HZ
+    assert len(trimmed(np.zeros(0))) == 0
 
 
 def test_a_pipe_is_heard_as_it_fills_and_may_be_odd_or_closed(tmp_path: Path) -> None:

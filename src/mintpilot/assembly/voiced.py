@@ -26,6 +26,8 @@ from mintpilot.voice.ports import Activity, Recogniser, SoundLink, Speech
 RECOGNISED = 0.6
 """A heard question is one of the world's where so much of the words is the same."""
 _READ_BACK = re.compile(r"understood\W+(yes|no)\b", re.IGNORECASE)
+_SAY = re.compile(r"say\W+confirm", re.IGNORECASE)
+"""A read-back again, without what was understood."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -53,17 +55,19 @@ class WorldKnowledge:
     def __init__(self, world: World, talk: Talk) -> None:
         self.answers = dict(_answers(world, talk))
         """Question → whether yes is true."""
-        self._last = ""
+        self._last = self._about = ""
 
     def __call__(self, heard: str) -> str | None:
         """What the person says; None: nothing, since it was no question."""
         read_back = _READ_BACK.search(heard)
         if read_back is not None:
-            return "confirm" if read_back.group(1).casefold() == self._last else "no"
+            self._about = read_back.group(1).casefold()
+        if read_back is not None or _SAY.search(heard):
+            return "confirm" if self._about and self._about == self._last else "no"
         best = max(self.answers, key=lambda text: alike(heard, text), default="")
         if alike(heard, best) < RECOGNISED:
             return "say again" if heard.rstrip().endswith("?") else None
-        self._last = "yes" if self.answers[best] else "no"
+        self._last, self._about = "yes" if self.answers[best] else "no", ""
         return self._last
 
 

@@ -18,6 +18,7 @@ from mintpilot.benchmark.voice_trials import (
     condition,
     kept_clip,
     outcome,
+    read_trials,
     recorded_clips,
     run_trials,
     synthetic_clips,
@@ -55,7 +56,13 @@ class VoiceResult:
 
     trials: tuple[VoiceTrial, ...]
     notes: tuple[str, ...]
-    memory_mb: float
+    memory_mb: float | None
+    """Of the whole process at most; None: not known."""
+
+
+def kept_voice(out: Path) -> VoiceResult:
+    """What a measurement that was interrupted has reached so far."""
+    return VoiceResult(trials=tuple(read_trials(out)), notes=(_MADE_NOISE,), memory_mb=None)
 
 
 def measure_voice(options: VoiceOptions, progress: Callable[[str], object] = lambda _: None) -> VoiceResult:
@@ -67,7 +74,7 @@ def measure_voice(options: VoiceOptions, progress: Callable[[str], object] = lam
     """
     ear = Ear(first=load("recogniser", "moonshine")(), second=load("recogniser", "whisper")())
     clips = recorded_clips(options.clips, options.most) if options.clips is not None else []
-    notes = ["Nothing was heard of a person beside real rotors: the noise is made."]
+    notes = [_MADE_NOISE]
     opened: list[Speech] = []
     try:
         spoken = synthetic_clips(_voices(options, opened))
@@ -122,6 +129,7 @@ def voice_tables(result: VoiceResult) -> list[Rows]:
     ]
 
 
+_MADE_NOISE = "Nothing was heard of a person beside real rotors: the noise is made."
 _ALONE = ("rotors", "silence")
 _HEARD = ("right", "95 %", "asked again", "opposite", "something else")
 
@@ -165,14 +173,14 @@ def _alone(trials: Sequence[VoiceTrial]) -> list[Sequence[str]]:
     return rows
 
 
-def _times(trials: Sequence[VoiceTrial], memory_mb: float) -> Sequence[str]:
+def _times(trials: Sequence[VoiceTrial], memory_mb: float | None) -> Sequence[str]:
     def cuts(values: list[float]) -> tuple[str, str]:
         found = quantiles(values, n=20) if len(values) > 1 else [*values, 0.0] * 19
         return f"{found[9]:.2f} s", f"{found[18]:.2f} s"
 
     factor = sum(trial.cpu_s for trial in trials) / max(1e-9, sum(trial.sound_s for trial in trials))
     processor, passed = cuts([t.answer_cpu_s for t in trials]), cuts([t.answer_s for t in trials])
-    return (str(len(trials)), *processor, *passed, f"{factor:.2f}", f"{memory_mb:.0f} MB")
+    return (str(len(trials)), *processor, *passed, f"{factor:.2f}", "-" if memory_mb is None else f"{memory_mb:.0f} MB")
 
 
 def _of(trials: Sequence[VoiceTrial], source: str) -> list[VoiceTrial]:

@@ -30,7 +30,6 @@ from mintpilot.core.events import (
     Event,
     FactsChanged,
     FrameSeen,
-    LegFlown,
     MapUpdated,
     MissionEnded,
     MissionStarted,
@@ -39,8 +38,10 @@ from mintpilot.core.events import (
     PlanChosen,
     QuestionTimed,
     Stepped,
+    StopsDone,
     ViewTaken,
 )
+from mintpilot.core.gap import GapKind
 from mintpilot.core.geometry import Floats
 from mintpilot.core.inputs import (
     Answered,
@@ -84,6 +85,7 @@ class MissionView:
         self._progress = Progress()
         self._asked: AskQuestion | None = None
         self._round: Deliberated | None = None
+        self._called: dict[str, str] = {}
         self._explanations: dict[str, GapExplanation] = {}
         self._replies: list[tuple[Evidence, AnswerLine]] = []
         self._asked_gaps: frozenset[str] = frozenset()
@@ -100,6 +102,8 @@ class MissionView:
         open_ = self._question
         if open_ is None or open_.id != question.id:
             self._log("question", question.text)
+            self._asked_gaps |= set(question.query.gap_ids)
+            self._tree(None)
         self._deadline_s = self._clock_s + patience_s
         self._question = question
         self._show(again=again)
@@ -140,9 +144,9 @@ class MissionView:
                 self._deliberated(event)
             case PlanChosen():
                 self._chosen(event)
-            case LegFlown():
-                if self._progress.flown(event):
-                    self._steps()
+            case StopsDone():
+                self._progress.did(event.stops)
+                self._steps()
             case Asked():
                 self._learnt(event)
             case OrderTaken():
@@ -154,7 +158,7 @@ class MissionView:
                 if self._is_open(event.question):
                     self._show()
             case FactsChanged():
-                self._board.put("told", told_pane(event))
+                self._board.put("told", told_pane(event, self._lang))
             case MissionEnded():
                 self._ended(event)
             case _:
@@ -238,7 +242,7 @@ class MissionView:
     def _draw(self, map: SemanticMap) -> None:
         self._map, self._drawn_s = map, self._clock_s
         height_m = self._started.mission.start_m[2] if self._started is not None else 1.0
-        pane, picture = map_pane(map, height_m)
+        pane, picture = map_pane(map, height_m, self._lang, self._called)
         self._board.put("map", pane, picture)
 
     def _decided(self, event: DeliberationEnded) -> None:
@@ -257,6 +261,11 @@ class MissionView:
             kept = TreeRound(round=before.round, root=before.root, answers=answers)
             self._earlier = (*self._earlier, kept)[-_ROUNDS:]
         self._round, self._replies = event, []
+        called = {gap.subject: gap.description for gap in event.gaps if gap.kind is not GapKind.TARGET}
+        if not called.items() <= self._called.items():
+            self._called |= called
+            if self._map is not None:
+                self._draw(self._map)
         self._tree(event.certificate)
 
     def _chosen(self, event: PlanChosen) -> None:
@@ -300,19 +309,23 @@ class MissionView:
         question = self._question
         if question is None:
             return
-        lang = self._started.language if self._started is not None else "en"
         timed = self._timed if self._timed is not None and self._timed.question == question.id else None
         pane = question_pane(
             question,
             self._asked,
             self._explanations,
-            lang=lang,
+            lang=self._lang,
             deadline_s=timed.deadline_s if timed is not None else self._deadline_s,
             extended=timed is not None and timed.extended,
             again=again,
         )
         self._board.put("question", pane)
         self._pictures.about(question, self._map)
+
+    @property
+    def _lang(self) -> str:
+        """The language in which the drone speaks."""
+        return self._started.language if self._started is not None else "en"
 
     def _path(self, path_m: Floats, seconds: float) -> None:
         self._board.put("plan", PathPane(points=path_points(path_m), seconds=round(seconds, 1)))

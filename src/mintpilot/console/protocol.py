@@ -108,14 +108,14 @@ class ToldOf(Command):
 
 
 class Confirmed(Command):
-    """What was told and read back is right."""
+    """What was read back is right: that it is so, or that it is taken back."""
 
     kind: Literal["confirm"] = "confirm"
     told: Name
 
 
 class TookBack(Command):
-    """What was told, or read back, does not hold."""
+    """What was told does not hold, or what is read back is not right."""
 
     kind: Literal["undo"] = "undo"
     told: Name
@@ -296,6 +296,8 @@ class Consequence(Message):
     share: float | None = None
     """Probability of this plan, given the reply."""
     undone: tuple[str, ...] = ()
+    frees: bool = False
+    """Whether this reply takes caution away, and others do not."""
 
 
 class Spot(Message):
@@ -320,6 +322,18 @@ class Worth(Message):
     """How many things are not known."""
 
 
+class Reason(Message):
+    """What hangs on a gap."""
+
+    words: str
+    """In English; the page says it from the figures where both are known."""
+    best_s: float | None = None
+    worst_s: float | None = None
+    """What the best plan takes if the gap turns out well, and if not."""
+    apart_m: float | None = None
+    """How far apart these two ways are."""
+
+
 class QuestionPane(Message):
     """The open question; all fields empty while there is none."""
 
@@ -332,7 +346,7 @@ class QuestionPane(Message):
     extended: bool = False
     consequences: tuple[Consequence, ...] = ()
     spots: tuple[Spot, ...] = ()
-    why: tuple[str, ...] = ()
+    why: tuple[Reason, ...] = ()
     """What hangs on each gap."""
     worth: Worth | None = None
     read_back: str = ""
@@ -438,7 +452,7 @@ class ToldLine(Message):
     """What it speaks of; empty for a drawn region."""
     who: str
     time_s: float
-    standing: Literal["read-back", "counts", "undone", "lapsed", "refused"]
+    standing: Literal["read-back", "counts", "undo-read-back", "undone", "lapsed", "refused"]
     why: str = ""
     corners: tuple[tuple[float, float], ...] = ()
 

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from mintpilot.console.protocol import Consequence, Point, QuestionPane, Spot, Worth
+from mintpilot.console.naming import named
+from mintpilot.console.protocol import Consequence, Point, QuestionPane, Reason, Spot, Worth
 from mintpilot.core.decisions import AskQuestion
 from mintpilot.core.gap import GapKind, KnowledgeGap
 from mintpilot.core.geometry import Floats
 from mintpilot.core.plan import Plan
-from mintpilot.core.query import NO_PART, YES_PART, Answer, Query, Question
+from mintpilot.core.query import NO_PART, YES_PART, Answer, Query, Question, Reply
+from mintpilot.core.reading import guarded_replies
 from mintpilot.core.tree import GapExplanation, Mint
 
 _MOST_POINTS = 400
@@ -44,9 +46,9 @@ def question_pane(
         deadline_s=deadline_s,
         extended=extended,
         again=again,
-        consequences=_consequences(question, asked),
-        spots=tuple(spot for gap in question.gaps for spot in _spots(gap, question.query)),
-        why=tuple(e.figures or e.why for gap in question.gaps if (e := explanations.get(gap.id)) is not None),
+        consequences=_consequences(question, asked, lang),
+        spots=tuple(spot for gap in question.gaps for spot in _spots(gap, question.query, lang)),
+        why=tuple(_reason(e) for gap in question.gaps if (e := explanations.get(gap.id)) is not None),
         worth=_worth(asked),
         read_back=_said(question, question.read_back),
         read_back_means=_means(question, question.read_back),
@@ -60,7 +62,16 @@ def path_points(path_m: Floats) -> tuple[Point, ...]:
     return tuple((round(float(x), 2), round(float(y), 2), round(float(z), 2)) for x, y, z in kept)
 
 
-def _consequences(question: Question, asked: AskQuestion | None) -> tuple[Consequence, ...]:
+def _reason(explanation: GapExplanation) -> Reason:
+    return Reason(
+        words=explanation.figures or explanation.why,
+        best_s=explanation.cost_if_favourable_s,
+        worst_s=explanation.cost_if_unfavourable_s,
+        apart_m=explanation.divergence_m,
+    )
+
+
+def _consequences(question: Question, asked: AskQuestion | None, lang: str) -> tuple[Consequence, ...]:
     query = question.query
     reasoning = asked.reasoning if asked is not None else None
     mint = reasoning.mint if reasoning is not None else None
@@ -69,15 +80,19 @@ def _consequences(question: Question, asked: AskQuestion | None) -> tuple[Conseq
         for part, words in enumerate(question.option_means):
             found.append(_led_to(query, part, mint, Consequence(reply="option", option=part, words=words)))
     else:
-        found.append(_led_to(query, YES_PART, mint, Consequence(reply="yes", words=question.yes_means)))
-        found.append(_led_to(query, NO_PART, mint, Consequence(reply="no", words=question.no_means)))
+        guarded = guarded_replies(question)
+        yes, no = (reply in guarded and len(guarded) == 1 for reply in (Reply.YES, Reply.NO))
+        found.append(_led_to(query, YES_PART, mint, Consequence(reply="yes", words=question.yes_means, frees=yes)))
+        found.append(_led_to(query, NO_PART, mint, Consequence(reply="no", words=question.no_means, frees=no)))
     grounded = any(gap.kind is GapKind.GO for gap in question.gaps)  # without a yes it does not take off
     found.append(Consequence(reply="unsure", words=question.no_means if grounded else ""))
     silence = Consequence(reply="silence", words=question.no_means if grounded else "")
     cautious = reasoning.cautious if reasoning is not None else None
     if reasoning is not None and cautious is not None:
         silence = _with_plan(silence, cautious, reasoning.gaps, None)
-    return (*found, silence)
+    return tuple(
+        c.model_copy(update={"undone": tuple(named(one, lang) for one in c.undone)}) for c in (*found, silence)
+    )
 
 
 def _led_to(query: Query, part: int, mint: Mint | None, consequence: Consequence) -> Consequence:
@@ -110,15 +125,21 @@ def _with_plan(
     return consequence.model_copy(update=update)
 
 
-def _spots(gap: KnowledgeGap, query: Query) -> tuple[Spot, ...]:
+def _spots(gap: KnowledgeGap, query: Query, lang: str) -> tuple[Spot, ...]:
     if gap.kind is GapKind.GO:
         return ()
     if not gap.candidates:
         region = gap.subject if gap.kind is GapKind.OBSTACLE else ""
-        return (Spot(id=gap.subject, words=gap.description, position=gap.position_m, region=region),)
+        return (Spot(id=gap.subject, words=named(gap.description, lang), position=gap.position_m, region=region),)
     choosable = query.gap_ids == (gap.id,)
     return tuple(
-        Spot(id=c.id, words=c.description or c.id, position=c.position_m, choosable=choosable) for c in gap.candidates
+        Spot(
+            id=c.id,
+            words=named(c.description, lang) if c.description else c.id,
+            position=c.position_m,
+            choosable=choosable,
+        )
+        for c in gap.candidates
     )
 
 

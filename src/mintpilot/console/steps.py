@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from mintpilot.console.protocol import StepPane, StepsPane
-from mintpilot.core.events import LegFlown
 from mintpilot.core.plan import Plan
 from mintpilot.core.task import Task
-from mintpilot.core.trajectory import FlightEnd
 
 
 class Progress:
@@ -25,12 +25,9 @@ class Progress:
         """Takes over the task."""
         self._texts, self._done = _keys(task), set()
 
-    def flown(self, leg: LegFlown) -> bool:
-        """Takes in one flight; whether it fulfilled a stop."""
-        if leg.phase != "mission" or leg.log.end is not FlightEnd.ARRIVED or not leg.stop_id:
-            return False
-        self._done.add(leg.stop_id)
-        return True
+    def did(self, stops: Iterable[str]) -> None:
+        """Takes in which stops were done so far."""
+        self._done = set(stops)
 
     @property
     def need_s(self) -> float | None:

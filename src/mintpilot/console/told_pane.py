@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
+from mintpilot.console.naming import named
 from mintpilot.console.protocol import ToldLine, ToldPane
 from mintpilot.core.events import FactsChanged
 from mintpilot.core.told import Fact, KeepOut, RegionBlocked, RegionPassable, RoomSearched, ThisOne
@@ -17,15 +18,15 @@ _NAMES: Final[dict[type[Fact], str]] = {
 }
 
 
-def told_pane(event: FactsChanged) -> ToldPane:
-    """All facts with their standing."""
+def told_pane(event: FactsChanged, lang: str) -> ToldPane:
+    """All facts with their standing; what they speak of in that language."""
     return ToldPane(
         told=tuple(
             ToldLine.model_validate(
                 {
                     "id": known.id,
                     "fact": _NAMES[type(known.fact)],
-                    "words": known.words,
+                    "words": named(known.words, lang),
                     "who": known.operator,
                     "time_s": round(known.told_s, 1),
                     "standing": known.standing.value,

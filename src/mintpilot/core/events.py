@@ -160,6 +160,14 @@ class FactsChanged:
     """All that was told so far, oldest first."""
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StopsDone:
+    """The drone has done another stop."""
+
+    stops: tuple[str, ...]
+    """Ids of all that were done so far, sorted."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Stepped:
     """One step of the mission: what happened, and a digest of what it made the mission do."""
@@ -209,6 +217,7 @@ Event: TypeAlias = (
     | OrderTaken
     | QuestionTimed
     | FactsChanged
+    | StopsDone
     | Stepped
     | Noticed
     | Timed

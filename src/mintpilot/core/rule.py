@@ -6,8 +6,6 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import StrEnum
 
-import numpy as np
-
 from mintpilot.core.geometry import Bools, Ints, frozen
 
 
@@ -95,12 +93,16 @@ class Automaton:
 
         A stay of any length counts: rules have no next step, so that the same letter again changes nothing.
         """
-        letters = np.arange(self.following.shape[1])
-        fitting = letters[(letters & yes == yes) & (letters & ~may == 0)]
+        doubtful = may & ~yes
+        fitting = [yes]
+        part = doubtful
+        while part:  # every part of what is not known
+            fitting.append(yes | part)
+            part = part - 1 & doubtful
         reached: set[int] = set()
         coming = set(states)
         while coming:
-            found = set(np.unique(self.following[np.ix_(sorted(coming), fitting)]).tolist())
+            found = {after for state in coming for after in self.following[state, fitting].tolist()}
             coming = found - reached
             reached |= found
         return frozenset(reached)

@@ -18,6 +18,7 @@ from mintpilot.core.events import (
     PlanChosen,
     QuestionTimed,
     Stepped,
+    StopsDone,
     Timed,
 )
 from mintpilot.core.inputs import Answered, DeliberationEnded, Input, MapObserved, MotionEnded, Ordered
@@ -95,6 +96,9 @@ class Journal:
             yield QuestionTimed(question=name, deadline_s=deadline_s, extended=extended)
         if after.told is not before.told:
             yield FactsChanged(told=tuple(one.known for one in after.told))
+        done = after.beliefs.finished if after.beliefs is not None else frozenset[str]()
+        if before.beliefs is not None and done != before.beliefs.finished:
+            yield StopsDone(stops=tuple(sorted(done)))
         yield from _asked(before, event, after)
         for directive in directives:
             if isinstance(directive, Note):

@@ -10,6 +10,8 @@ from mintpilot.core.compiled import compiled
 from mintpilot.core.geometry import Floats, Ints
 from mintpilot.planning.lattice import Lattice, Words
 
+ROUNDING = 1e-13
+"""Costs that differ by less, edges, are equal."""
 UNCERTAIN = 1e-9
 """At equal length a way with fewer uncertain cells is taken: what each of them counts for, edges."""
 
@@ -110,8 +112,8 @@ def _spread(
             if after < 0:
                 continue
             to = there * count + after
-            far = cost[here] + length[k] + 1e-9 * uncertain[there]
-            if closed[to] or far >= cost[to] - 1e-13:
+            far = cost[here] + length[k] + UNCERTAIN * uncertain[there]
+            if closed[to] or far >= cost[to] - ROUNDING:
                 continue
             cost[to] = far
             before[to] = here

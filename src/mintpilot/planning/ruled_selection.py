@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import heapq
 import itertools
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 
@@ -25,6 +26,10 @@ from mintpilot.planning.selection import Selection, Selector, picked_for
 
 MAX_LABELS = 20_000
 """So many (stops done, place, state of the rules) are followed before the best plan found so far is taken."""
+MOST_BOUNDED = 8
+"""Up to so many stops what is left to fly is bounded by the best order of them without rules."""
+DECIMALS_S = 6
+"""Decimal places to which seconds are compared."""
 END = "end"
 """Id of the stop at the place where the rules want the flight to end."""
 
@@ -55,6 +60,40 @@ class _Ending:
     homeward: int = 0
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Wanted:
+    """The stops that are chosen among: n of them."""
+
+    stops: tuple[Stop, ...]
+    places: tuple[Cell3 | None, ...]
+    before: tuple[int, ...]
+    """(n,) bit sets of the stops that must come before each."""
+    later: tuple[int, ...]
+    """(n,) bit sets of those that must not."""
+
+    def next(self, done: int) -> Iterator[tuple[int, Stop, Cell3]]:
+        """The stops that may come after those: number, stop, place."""
+        for i, (stop, place) in enumerate(zip(self.stops, self.places, strict=True)):
+            ready = not self.before[i] & ~done and not done & (self.later[i] | 1 << i)
+            if place is not None and ready:
+                yield i, stop, place
+
+    def left_s(self, done: int) -> float:
+        """Prices of the others, those of optional stops by their chance."""
+        return sum(stop.price_s * stop.chance for i, stop in enumerate(self.stops) if not done >> i & 1)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class _Made:
+    """A choice that was made."""
+
+    wanted: _Wanted
+    blocked: int
+    mask: int
+    """Regions that it enters."""
+    found: Selection
+
+
 class RuledSelector:
     """Chooses as `Selector` does among the plans that keep the rules.
 
@@ -78,6 +117,7 @@ class RuledSelector:
         for bit, cells in enumerate(terrain.regions):
             self._masks[cells] |= np.uint64(1 << bit)
         self._ways: dict[tuple[int, int, Cell3, int, int], RuledWays] = {}
+        self._made: list[_Made] = []
         self.searches = 0
         self.notes: set[str] = plain.notes
 
@@ -92,7 +132,16 @@ class RuledSelector:
         plain = self._plain.select(values, visits, blocked, uncertain)
         if plain is None or self._keeps(plain):
             return plain
-        return self._searched(plain, values, (*self._itinerary.ordered, *visits), blocked, uncertain)
+        wanted = self._wanted(values, (*self._itinerary.ordered, *visits))
+        for one in self._made:
+            # With fewer regions closed nothing is worse: what keeps out of these, too, is the best here.
+            if one.wanted == wanted and not one.blocked & ~blocked and not one.mask & blocked:
+                return one.found
+        found = self._searched(plain, wanted, blocked, uncertain)
+        if found is not None:
+            mask = found.route.mask | found.homeward
+            self._made.append(_Made(wanted=wanted, blocked=blocked, mask=mask, found=found))
+        return found
 
     def _begun(self) -> tuple[int, int]:
         """Set of states and propositions held in the middle of the plan's first cell."""
@@ -117,57 +166,74 @@ class RuledSelector:
                 rules = self._grid.followed(rules, self._flats(back.path), held)
         return self._grid.is_kept(rules)
 
-    def _searched(
-        self, plain: Selection, values: Mapping[str, str], wanted: Sequence[Stop], blocked: int, uncertain: int
-    ) -> Selection | None:
-        places = [self._itinerary.place(stop, values) for stop in wanted]
-        ordered = sum(not stop.optional for stop in wanted)
-        prices = [stop.price_s * stop.chance for stop in wanted]
-        picks = [picked_for(stop, self._itinerary.ordered) for stop in wanted]
-        ids = [stop.id for stop in wanted]
-        needs = [None if pick is None else ids.index(pick.id) for pick in picks]
+    def _wanted(self, values: Mapping[str, str], stops: tuple[Stop, ...]) -> _Wanted:
+        ids, ordered = [stop.id for stop in stops], sum(not stop.optional for stop in stops)
+        picks = [picked_for(stop, self._itinerary.ordered) for stop in stops]
+        return _Wanted(
+            stops=stops,
+            places=tuple(self._itinerary.place(stop, values) for stop in stops),
+            before=tuple(0 if pick is None else 1 << ids.index(pick.id) for pick in picks),
+            later=tuple((1 << ordered) - (2 << i) if i < ordered else 0 for i in range(len(stops))),
+        )
+
+    def _searched(self, plain: Selection, wanted: _Wanted, blocked: int, uncertain: int) -> Selection | None:
+        """Labels in the order of the least that a route through them costs: the ways without rules bound the rest."""
         rules, held = self._begun()
         if rules < 0:
             return None
-        first = _Label(
-            cost_s=self._plain.start_s, done=0, order=(), place=self._itinerary.start, rules=rules, held=held, paths=()
-        )
+        least = self._least(wanted, blocked)
+        start = self._itinerary.start
+        first = _Label(cost_s=self._plain.start_s, done=0, order=(), place=start, rules=rules, held=held, paths=())
         heap: list[tuple[float, int, _Label]] = [(first.cost_s, 0, first)]
         count, seen = itertools.count(1), set[tuple[int, Cell3, int, int]]()
         best: tuple[tuple[float, ...], _Label, _Ending] | None = None
         while heap:
-            cost_s, _, here = heapq.heappop(heap)
+            bound_s, _, here = heapq.heappop(heap)
             key = (here.done, here.place, here.rules, here.held)
             if key in seen:
                 continue
-            if best is not None and round(cost_s, 6) > best[0][0]:
+            if best is not None and round(bound_s, DECIMALS_S) > best[0][0]:
                 break
             if len(seen) >= MAX_LABELS:
                 self.notes.add(f"more than {MAX_LABELS} combinations of stops and rules; the best plan found is taken")
                 break
             seen.add(key)
-            if here.done:
-                end = self._ended(here, blocked, uncertain)
-                left_s = sum(p for i, p in enumerate(prices) if not here.done >> i & 1)
-                if end is not None:
-                    rank = (round(cost_s + end.hop_s + left_s, 6), left_s, cost_s)
-                    if best is None or rank < best[0]:
-                        best = (rank, here, end)
-            ways = self._from(here, blocked, uncertain)
-            for i, place in enumerate(places):
-                need = needs[i]
-                if place is None or here.done >> i & 1 or (need is not None and not here.done >> need & 1):
-                    continue
-                if i < ordered and here.done & ((1 << ordered) - 1) >> (i + 1) << (i + 1):
-                    continue
-                for state, _ in ways.at(self._lattice.node(place)):
-                    way = self._way(ways, place, state)
-                    after, held = self._grid.done(int(ways.sets[state]), self._flat(place), wanted[i].id, here.held)
-                    far_s = cost_s + way.cost * self._itinerary.edge_s + wanted[i].dwell_s
-                    if after < 0 or far_s > self._plain.battery_s + TOLERANCE:
-                        continue
-                    label = _Label(
-                        cost_s=far_s,
+            end = self._ended(here, blocked, uncertain) if here.done else None
+            if end is not None:
+                left_s = wanted.left_s(here.done)
+                rank = (round(here.cost_s + end.hop_s + left_s, DECIMALS_S), left_s, here.cost_s)
+                if best is None or rank < best[0]:
+                    best = (rank, here, end)
+            for after in self._onward(here, wanted, blocked, uncertain):
+                heapq.heappush(heap, (after.cost_s + least(after.done, after.place), next(count), after))
+        return None if best is None else self._chosen(plain, wanted.stops, best[1], best[2])
+
+    def _least(self, wanted: _Wanted, blocked: int) -> Callable[[int, Cell3], float]:
+        """The least that any route still costs after some stops at a place, what it leaves undone counted, seconds."""
+
+        @cache
+        def least(done: int, place: Cell3) -> float:
+            if len(wanted.stops) > MOST_BOUNDED:
+                return 0.0
+            onward = [
+                self._plain.flight_s(place, there, blocked) + stop.dwell_s + least(done | 1 << i, there)
+                for i, stop, there in wanted.next(done)
+            ]
+            return min([wanted.left_s(done), *onward])
+
+        return least
+
+    def _onward(self, here: _Label, wanted: _Wanted, blocked: int, uncertain: int) -> Iterator[_Label]:
+        """The labels after one more stop."""
+        ways = self._from(here, blocked, uncertain)
+        for i, stop, place in wanted.next(here.done):
+            for state, _ in ways.at(self._lattice.node(place)):
+                way = self._way(ways, place, state)
+                after, held = self._grid.done(int(ways.sets[state]), self._flat(place), stop.id, here.held)
+                cost_s = here.cost_s + way.cost * self._itinerary.edge_s + stop.dwell_s
+                if after >= 0 and cost_s <= self._plain.battery_s + TOLERANCE:
+                    yield _Label(
+                        cost_s=cost_s,
                         done=here.done | 1 << i,
                         order=(*here.order, i),
                         place=place,
@@ -175,10 +241,6 @@ class RuledSelector:
                         held=held,
                         paths=(*here.paths, way),
                     )
-                    heapq.heappush(heap, (far_s, next(count), label))
-        if best is None:
-            return None
-        return self._chosen(plain, wanted, best[1], best[2])
 
     def _ended(self, here: _Label, blocked: int, uncertain: int) -> _Ending | None:
         """How the flight may end after this; None: not with the rules kept."""
@@ -194,7 +256,7 @@ class RuledSelector:
             first = self._lattice.node(self._itinerary.home) * len(kept)
             row = first + int(np.argmin(cost[first : first + len(kept)]))
         else:
-            row = int(np.argmin(np.round(cost, 6)))
+            row = int(np.argmin(np.round(cost, DECIMALS_S)))
         if not np.isfinite(cost[row]) or cost[row] * self._itinerary.edge_s > spare_s:
             return None
         node, state = divmod(row, len(kept))

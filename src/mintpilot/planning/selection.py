@@ -106,7 +106,7 @@ class Selector:
         place = self.itinerary.place(stop, {})
         if place is None or not np.isfinite(self.battery_s):
             return place is not None
-        there_s = self.start_s + self._flight_s(self.itinerary.start, place, blocked) + stop.dwell_s
+        there_s = self.start_s + self.flight_s(self.itinerary.start, place, blocked) + stop.dwell_s
         return there_s + self._home_s(place, blocked) <= self.battery_s + TOLERANCE
 
     def select(
@@ -172,7 +172,7 @@ class Selector:
             place = places[stop.id]
             pick = picked_for(stop, self.itinerary.ordered)
             ids = [s.id for s in stops]
-            if place is None or not np.isfinite(self._flight_s(here, place, blocked)):
+            if place is None or not np.isfinite(self.flight_s(here, place, blocked)):
                 continue
             if pick is not None and pick.id not in ids:
                 continue
@@ -180,12 +180,12 @@ class Selector:
             stops.append(stop)
         cells = [place for stop in stops if (place := places[stop.id]) is not None]
         stay = np.array([stop.dwell_s for stop in stops])
-        start = np.array([self.start_s + self._flight_s(here, cell, blocked) for cell in cells]) + stay
+        start = np.array([self.start_s + self.flight_s(here, cell, blocked) for cell in cells]) + stay
         apart = np.full((len(cells), len(cells)), np.inf)
         for i, one in enumerate(cells):
             for j, other in enumerate(cells):
                 if i != j:
-                    apart[i, j] = self._flight_s(one, other, blocked) + stay[j]
+                    apart[i, j] = self.flight_s(one, other, blocked) + stay[j]
         return _Reachable(
             stops=tuple(stops),
             places=tuple(cells),
@@ -294,9 +294,10 @@ class Selector:
         if self.itinerary.problem.home_m is None:
             return 0.0
         home = self.itinerary.home
-        return float("inf") if home is None else self._flight_s(cell, home, blocked)
+        return float("inf") if home is None else self.flight_s(cell, home, blocked)
 
-    def _flight_s(self, one: Cell3, other: Cell3, blocked: int) -> float:
+    def flight_s(self, one: Cell3, other: Cell3, blocked: int) -> float:
+        """Seconds of the shortest way between two cells that keeps out of those regions; infinite where none leads."""
         key = (one, other, blocked)
         if key not in self._flights:
             way = self.legs.between(one, other).best(blocked)

@@ -19,6 +19,7 @@ from mintpilot.core.events import (
     PlanChosen,
     QuestionTimed,
     Stepped,
+    StopsDone,
     Timed,
     ViewTaken,
 )
@@ -67,7 +68,7 @@ class History:
                 self.notices.append(event)
             case OrderTaken():
                 self.orders.append(event)
-            case Stepped() | FactsChanged() | QuestionTimed() | ViewTaken():
+            case Stepped() | FactsChanged() | StopsDone() | QuestionTimed() | ViewTaken():
                 pass
             case Timed():
                 self.timings_s[event.stage] = self.timings_s.get(event.stage, 0.0) + event.seconds

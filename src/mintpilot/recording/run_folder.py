@@ -36,6 +36,7 @@ from mintpilot.core.events import (
     MissionStarted,
     PlanChosen,
     QuestionTimed,
+    StopsDone,
     ViewTaken,
 )
 from mintpilot.core.ports import Recorder
@@ -48,7 +49,7 @@ from mintpilot.recording.mcap_log import MCAP_FILE, McapRecorder
 from mintpilot.recording.record import MissionRecord, NoticeRecord
 
 _DECISIONS = (MissionStarted, Deliberated, Asked, PlanChosen, LegFlown, MissionEnded)
-DERIVED = (MapUpdated, Deliberated, PlanChosen, LegFlown, FactsChanged, QuestionTimed)
+DERIVED = (MapUpdated, Deliberated, PlanChosen, LegFlown, FactsChanged, StopsDone, QuestionTimed)
 """What follows from the steps, and is large: it is not written a second time."""
 _UNWRITTEN = (*DERIVED, ViewTaken)
 _RUNNING = "The mission was still running when this was written."

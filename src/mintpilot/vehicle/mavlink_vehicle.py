@@ -20,7 +20,7 @@ from mintpilot.vehicle.control_state import AIRBORNE, Phase
 from mintpilot.vehicle.envelope import SafetyEnvelope
 from mintpilot.vehicle.link_process import LinkFailed, LinkSetup, Report, Snapshot, run_link
 from mintpilot.vehicle.preparing import Prepared
-from mintpilot.vehicle.signals import Brake, Changed, Ended, Settle
+from mintpilot.vehicle.signals import Brake, Changed, Ended, Settle, Start
 
 PREPARE_S = 240.0
 """Longest preparation on the ground, seconds; every part of it has a shorter time-out of its own."""
@@ -114,7 +114,9 @@ class MavlinkVehicle(Vehicle):
             self.advance(self._now() + 0.2)
         why = self._not_ready()
         how = "mend what the autopilot complains of; its ground station shows it in full"
-        return (Check(check="ready to arm", ok=not why, value=why or "yes", wanted="yes", how=how),)
+        told = self._snapshot is not None and self._snapshot.seen.start is not Start.SET_POINTS
+        value = why or ("yes" if told else "told only when its motors are to start: Hold needs a global position")
+        return (Check(check="ready to arm", ok=not why, value=value, wanted="yes", how=how),)
 
     def _not_ready(self) -> str:
         if self._snapshot is None:

@@ -129,7 +129,7 @@ class MavsdkLink:
         now_s = self._clock()
         if now_s - max(self.telemetry.heartbeat_s + LATE_BEAT_S, self._beat_asked_s + BEAT_AGAIN_S) > 0:
             self._beat_asked_s = now_s
-            with suppress(MavsdkError):  # a link that sends no more is told by what is not heard
+            with suppress(MavsdkError, RuntimeError):  # closed, or broken: that is told by what is not heard
                 self._direct.send_message(self._long(_REQUEST, _HEARTBEAT))
 
     def keep_rates(self) -> None:
@@ -141,7 +141,8 @@ class MavsdkLink:
         self._rates_s, self._counted = self._clock(), self.telemetry.positions
         self._best_hz = max(self._best_hz, rate_hz)
         if 0 < rate_hz < self._best_hz / 2:
-            self._workers.submit(self._set_rates)
+            with suppress(RuntimeError):  # closed meanwhile
+                self._workers.submit(self._set_rates)
 
     def get_parameter(self, name: str) -> float | None:
         """A parameter's value; None where the autopilot has none of that name or does not answer."""

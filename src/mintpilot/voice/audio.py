@@ -14,6 +14,8 @@ from mintpilot.voice.ports import RATE_HZ
 
 LONGEST_S = 600.0
 """Files are read no further than this, seconds."""
+_EDGE_S = 0.03
+"""Kept of the silence around speech, seconds."""
 _RATES_HZ = (4_000, 192_000)
 
 
@@ -88,6 +90,15 @@ def resampled(samples: Floats, rate_hz: int) -> Floats:
 
     common = gcd(rate_hz, RATE_HZ)
     return np.asarray(resample_poly(samples, RATE_HZ // common, rate_hz // common), dtype=float)
+
+
+def trimmed(samples: Floats) -> Floats:
+    """Samples without the silence before and after: what is quieter than a hundredth of the loudest."""
+    loud = np.flatnonzero(np.abs(samples) > 0.01 * np.abs(samples).max(initial=0.0))
+    if not len(loud):
+        return samples
+    edge = int(_EDGE_S * RATE_HZ)
+    return samples[max(0, loud[0] - edge) : loud[-1] + edge]
 
 
 def level_db(samples: Floats) -> float:

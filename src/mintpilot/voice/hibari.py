@@ -8,7 +8,7 @@ import numpy as np
 
 from mintpilot.core.errors import DeviceError
 from mintpilot.core.geometry import Floats
-from mintpilot.voice.audio import resampled
+from mintpilot.voice.audio import resampled, trimmed
 from mintpilot.voice.models import HIBARI, checked_files
 from mintpilot.voice.ports import Speech
 
@@ -43,4 +43,4 @@ class HibariSpeech(Speech):
             made = self._voice(_NO.sub("no!", text[:LONGEST]), speed=min(2.0, max(0.5, speed)), seed=0)
         except Exception as error:  # whatever the library raises, the caller learns of one kind
             raise DeviceError(f"speech by hibari failed: {error}") from error
-        return resampled(np.asarray(made, float), self._rate_hz)
+        return trimmed(resampled(np.asarray(made, float), self._rate_hz))

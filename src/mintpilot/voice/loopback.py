@@ -41,7 +41,7 @@ class LoopbackPerson(SoundLink):
     Attributes:
         heard: what the person understood, oldest first.
         said: what the person answered, oldest first.
-        sound_s: seconds of speech so far, both ways, and of reaction.
+        sound_s: seconds of speech, both ways, and of reaction, up to the last answer.
     """
 
     def __init__(
@@ -59,13 +59,13 @@ class LoopbackPerson(SoundLink):
         self._due: list[tuple[float, Floats]] = []
         self.heard: list[str] = []
         self.said: list[str] = []
-        self.sound_s = 0.0
+        self.sound_s = self._unanswered_s = 0.0
 
     def play(self, samples: Floats, time_s: float) -> None:
         """The person listens to the end, and answers after a moment."""
         begins_s = max(time_s, self._until_s)
         self._until_s = begins_s + len(samples) / RATE_HZ
-        self.sound_s += len(samples) / RATE_HZ
+        self._unanswered_s += len(samples) / RATE_HZ
         found = self._ear.hypotheses(samples)
         words = found[0].text if found else ""
         self.heard.append(words)
@@ -78,7 +78,8 @@ class LoopbackPerson(SoundLink):
         sound = np.concatenate([quiet[: len(quiet) // 2], spoken, quiet])
         if self._conditions.snr_db is not None:
             sound = _over_rotors(sound, spoken, self._conditions.snr_db, self._rng)
-        self.sound_s += self._conditions.reaction_s + len(spoken) / RATE_HZ
+        self.sound_s += self._unanswered_s + self._conditions.reaction_s + len(spoken) / RATE_HZ
+        self._unanswered_s = 0.0
         self._due.append((self._until_s + self._conditions.reaction_s + len(sound) / RATE_HZ, sound))
 
     def stop(self) -> None:

@@ -27,6 +27,7 @@ _MOST_AT_ONCE = 4
 """Utterances that wait to be recognised; of a flood the oldest are left out."""
 _CALLED = {Order.RETURN: "come back", Order.LAND: "land", Order.ABORT: "abort the mission", Order.CONTINUE: "continue"}
 _NOT_UNDERSTOOD = "I did not understand."
+_SAY = "Say confirm, or no."
 _GIVEN_UP = "I did not understand. I take it as: you do not know."
 _TO_SCREEN = "I did not understand. Please answer on the screen."
 
@@ -269,7 +270,7 @@ class VoiceOperator(Operator):
         """An order other than "stop" waits for its confirmation; the drone holds meanwhile."""
         self._to_confirm = (order, time_s + CONFIRM_S)
         begins = "" if order is Order.CONTINUE else "I hold. "
-        self._say(f"{begins}I understood: {_CALLED[order]}. Say confirm, or no.", Priority.ORDER)
+        self._say(f"{begins}I understood: {_CALLED[order]}. {_SAY}", Priority.ORDER)
         return [] if order is Order.CONTINUE else [self._ordered(Order.HOLD, text, time_s)]
 
     def _confirmed(self, hearing: Hearing, time_s: float) -> list[OperatorInput]:
@@ -319,7 +320,10 @@ class VoiceOperator(Operator):
         """Asks once more; the second time it is left to the screen, or counts as not knowing."""
         if not turn.asked_again:
             turn.asked_again = True
-            self._repeat(turn, before=_NOT_UNDERSTOOD)
+            if turn.question.read_back is None:
+                self._repeat(turn, before=_NOT_UNDERSTOOD)
+            else:  # what was understood has just been said, and stands in the caption
+                self._ask(turn, f"{_NOT_UNDERSTOOD} {_SAY}")
             return []
         self._turn = None
         self._say(_TO_SCREEN if self._has_screen else _GIVEN_UP, Priority.NOTICE)
@@ -343,7 +347,7 @@ def _read_back(question: Question, answer: Answer) -> str:
         named = f"{part + 1}, {query.part_words(part)}" if query.is_choice else said
         means = question.means(part)
         said = f"{named}: {means}" if means else named
-    return f"I understood {said}. Say confirm, or no."
+    return f"I understood {said}. {_SAY}"
 
 
 def _why(question: Question) -> str:

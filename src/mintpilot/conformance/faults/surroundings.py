@@ -27,6 +27,7 @@ from mintpilot.core.events import (
     MapUpdated,
     PlanChosen,
     QuestionTimed,
+    StopsDone,
     ViewTaken,
 )
 from mintpilot.core.inputs import DeliberationEnded
@@ -34,7 +35,7 @@ from mintpilot.core.ports import Recorder
 from mintpilot.mission.requests import Request
 from mintpilot.mission.worker import Worker
 
-UNWRITTEN = (MapUpdated, Deliberated, PlanChosen, LegFlown, FactsChanged, QuestionTimed, ViewTaken)
+UNWRITTEN = (MapUpdated, Deliberated, PlanChosen, LegFlown, FactsChanged, StopsDone, QuestionTimed, ViewTaken)
 """What a run folder does not write as an event: it follows from the others, or is for those who watch."""
 SLOW_S = 0.004
 """Longest that a slow disk takes for a write."""

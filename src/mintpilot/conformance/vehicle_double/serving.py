@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import multiprocessing
+import os
 import select
 import signal
 import socket
@@ -242,6 +243,8 @@ def free_port() -> int:
 
 def _serve(pipe: Connection, setup: DoubleSetup) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    with suppress(OSError):  # an autopilot has a processor of its own
+        os.nice(-10)
     loop = DoubleLoop(setup)
     pipe.send(None)
     try:

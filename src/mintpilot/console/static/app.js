@@ -1,7 +1,7 @@
 // Puts the page together: what comes over the link goes to the map, the card, the tree and the lists.
 
 import { Card } from "./card.js";
-import { $, make } from "./dom.js";
+import { $, make, renew } from "./dom.js";
 import { Link } from "./link.js";
 import { MapView } from "./map.js";
 import { Microphone } from "./microphone.js";
@@ -56,9 +56,9 @@ function showMission(m) {
   $("name").textContent = m.name;
   $("instruction").textContent = m.instruction;
   $("briefing").replaceChildren(
-    ...(m.verdict ? [make("p", { class: `verdict ${m.verdict === "success" ? "good" : "bad"}`, role: "status" }, make("strong", { text: say("ended") }), make("span", { text: m.reason }),
+    ...(m.verdict ? [make("p", { class: `verdict ${m.verdict === "success" ? "good" : "bad"}`, role: "status" }, make("strong", { text: say("ended") }), make("span", { lang: "en", text: m.reason }),
       ...(m.waited_s >= 0.5 ? [make("span", { class: "figures", text: say("waited", Math.round(m.waited_s), Math.max(0, Math.round(m.hidden_s))) })] : []))] : []),
-    ...(m.briefing.length && !m.verdict ? [make("details", { open: true }, make("summary", { text: say("briefing") }), ...m.briefing.map((line) => make("p", { text: line })))] : []));
+    ...(m.briefing.length && !m.verdict ? [make("details", { open: true }, make("summary", { text: say("briefing") }), ...m.briefing.map((line) => make("p", { lang: "en", text: line })))] : []));
 }
 
 function showSeat(s) {
@@ -78,7 +78,7 @@ function showSeat(s) {
 
 function showOrders() {
   $("orders").setAttribute("aria-label", say("orders"));
-  $("orders").replaceChildren(...ORDERS.map((order) => make("button", {
+  renew($("orders"), ...ORDERS.map((order) => make("button", {
     type: "button", class: `order ${order}`, disabled: !last.seat?.data.may_answer, text: say(order), onclick: () => link.send({ kind: "order", order }),
   })));
 }
@@ -109,7 +109,7 @@ function showLog(from, items) {
   lines.length = Math.min(lines.length, from);
   lines.push(...items);
   const log = $("log-box"), below = log.scrollHeight - log.scrollTop - log.clientHeight < 40;
-  $("log").replaceChildren(...lines.slice(-200).map((l) => make("li", { class: `line-${l.kind}` }, make("time", { text: `${l.time_s.toFixed(0)} s` }), make("b", { text: say(`log-${l.kind}`) }), make("span", { text: l.text }))));
+  $("log").replaceChildren(...lines.slice(-200).map((l) => make("li", { class: `line-${l.kind}` }, make("time", { text: `${l.time_s.toFixed(0)} s` }), make("b", { text: say(`log-${l.kind}`) }), make("span", { lang: /^(question|answer)$/.test(l.kind) ? null : "en", text: l.text }))));
   if (below) log.scrollTop = log.scrollHeight;
 }
 

@@ -1,6 +1,6 @@
 // The question card: one question, what each answer leads to, and how long there is.
 
-import { $, make } from "./dom.js";
+import { $, make, renew } from "./dom.js";
 import { language, say } from "./words.js";
 
 const CALM_MS = 500; // what was pressed for the last question answers no new one
@@ -114,8 +114,7 @@ export class Card {
     card.hidden = !q;
     document.body.classList.toggle("asking", Boolean(q));
     if (!q) { card.replaceChildren(); return; }
-    const focused = document.activeElement?.dataset?.reply;
-    card.replaceChildren(
+    renew(card,
       make("div", { class: "top" },
         make("p", { class: "who", text: say(q.attempt > 1 ? "asksAgain" : "asks") }),
         make("p", { class: "left", id: "left" })),
@@ -129,10 +128,9 @@ export class Card {
         make("button", { type: "button", onclick: () => { this.#aloud = !this.#aloud; globalThis.speechSynthesis?.cancel(); this.draw(); if (this.#aloud) this.repeat(false); }, "aria-pressed": String(this.#aloud), text: say(this.#aloud ? "mute" : "aloud") }),
         ...(q.spots.length ? [make("button", { type: "button", onclick: () => this.attend("where"), text: say("where") })] : []),
         ...(q.why.length || q.worth ? [make("button", { type: "button", onclick: () => { this.#why = !this.#why; this.draw(); }, "aria-expanded": String(this.#why), text: say("why") })] : [])),
-      ...(this.#why ? [make("ul", { class: "why" }, ...q.why.map((line) => make("li", { text: line })),
+      ...(this.#why ? [make("ul", { class: "why" }, ...q.why.map((one) => this.#reason(one)),
         ...(q.worth ? [make("li", { text: say("reasons", q.worth.gain_bits.toFixed(2), q.worth.saved_s.toFixed(1), q.worth.queries, q.worth.gaps) })] : []))] : []),
       ...this.#candidates(q));
-    if (focused) card.querySelector(`[data-reply="${focused}"]`)?.focus();
     this.#count();
   }
 
@@ -157,12 +155,19 @@ export class Card {
       else this.#reply(c.reply, c.reply === "option" ? c.option : null);
     };
     return make("button", {
-      type: "button", class: `answer ${c.reply}`, "data-reply": c.reply + (c.option ?? ""), "aria-keyshortcuts": key,
+      type: "button", class: `answer ${c.reply}${c.frees ? " frees" : ""}`, "data-reply": c.reply + (c.option ?? ""), "aria-keyshortcuts": key,
       disabled: !this.#may && c.reply !== "silence", onclick: press, onmouseenter: show, onmouseleave: hide, onfocus: show, onblur: hide,
     },
     make("strong", { text: name }, ...(key && key !== name ? [make("kbd", { text: key, "aria-hidden": "true" })] : [])),
     make("span", { class: "means", lang: this.#question.lang, text: words }),
-    ...(figures ? [make("span", { class: "figures", text: figures })] : []));
+    ...(figures ? [make("span", { class: "figures", text: figures })] : []),
+    ...(c.frees ? [make("span", { class: "warns", text: say("frees") })] : []));
+  }
+
+  #reason({ words, best_s, worst_s, apart_m }) {
+    if (best_s == null || worst_s == null) return make("li", { lang: "en", text: words });
+    const figures = [best_s, worst_s, Math.abs(worst_s - best_s), apart_m ?? 0].map((value) => value.toFixed(1));
+    return make("li", { text: say("hangs", ...figures) });
   }
 
   #confirm(q) {

@@ -13,3 +13,11 @@ export function make(tag, options = {}, ...children) {
   element.append(...children);
   return element;
 }
+
+/** Replaces what is inside, and leaves the focus where it was: on what is called the same. */
+export function renew(parent, ...children) {
+  const name = (one) => one.dataset.reply ?? one.getAttribute("aria-label") ?? one.textContent;
+  const held = parent.contains(document.activeElement) && document.activeElement !== parent ? name(document.activeElement) : null;
+  parent.replaceChildren(...children);
+  if (held !== null) [...parent.querySelectorAll("button, summary, a, [tabindex]")].find((one) => name(one) === held)?.focus();
+}

@@ -3,6 +3,7 @@
 const QUIET_MS = 3000; // the server says something every second
 const MOST_WAITING = 64 * 1024; // bytes of sound
 const token = location.hash.slice(1);
+const WAITING = `waiting ${token}`; // what was pressed for another mission is never sent to this one
 
 const browser = (() => {
   let name = sessionStorage.getItem("browser");
@@ -15,7 +16,7 @@ const browser = (() => {
 
 export class Link extends EventTarget {
   #socket = null;
-  #waiting = []; // commands that were not acknowledged yet
+  #waiting = JSON.parse(sessionStorage.getItem(WAITING) || "[]"); // commands that were not acknowledged yet
   #n = Number(sessionStorage.getItem("n") || 0);
   #heard = 0;
   #state = "";
@@ -32,8 +33,13 @@ export class Link extends EventTarget {
   send(command) {
     sessionStorage.setItem("n", ++this.#n);
     const message = { ...command, n: this.#n };
-    this.#waiting.push(message);
+    this.#keep([...this.#waiting, message]);
     if (this.up) this.#socket.send(JSON.stringify(message));
+  }
+
+  #keep(waiting) { // over a reload, too
+    this.#waiting = waiting;
+    sessionStorage.setItem(WAITING, JSON.stringify(waiting));
   }
 
   // Sound is worth nothing later: what the link cannot take now is left out.
@@ -88,7 +94,7 @@ export class Link extends EventTarget {
     if (message.pane) this.#tell(message.pane, { data: message.data, payload });
     else if (message.stream) this.#tell(message.stream, message);
     else if (message.ack) {
-      this.#waiting = this.#waiting.filter((m) => m.n !== message.ack);
+      this.#keep(this.#waiting.filter((m) => m.n !== message.ack));
       if (!message.taken) this.#tell("not-taken", message.ack);
     }
   }

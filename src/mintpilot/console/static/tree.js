@@ -10,8 +10,8 @@ export function showTree(pane) {
   ...pane.answers.map((a, i) => make("p", {}, make("strong", { text: `${say("answerNo", i + 1)}: ` }), make("span", { text: `${a.question} – ${a.reply}` }))));
   $("tree").replaceChildren(pane.root ? make("ul", { class: "tree" }, node(pane.root, 0)) : make("p", { text: say("noTree") }));
   $("gaps").replaceChildren(...pane.gaps.map((g) => make("li", { class: g.asked ? "asked" : "" },
-    make("strong", { text: g.words }), " ", make("span", { class: "chip", text: say(g.asked ? "asked" : "notAsked") }),
-    make("p", { text: g.why }))));
+    make("strong", { lang: "en", text: g.words }), " ", make("span", { class: "chip", text: say(g.asked ? "asked" : "notAsked") }),
+    make("p", { lang: "en", text: g.why }))));
 }
 
 function node(n, depth) {
@@ -21,8 +21,8 @@ function node(n, depth) {
     ...(n.leaf ? [n.leaf] : []),
     ...(n.ruled_out_by ? [say("ruledOut", n.ruled_out_by)] : []),
     ...(n.flown ? [say("flownPlan")] : [])].join(" · ");
-  const head = [make("span", { class: "given", text: n.words }), make("span", { class: "figures", text: figures }),
-    ...(n.branch ? [make("span", { class: "branch", text: `${n.branch}?` })] : [])];
+  const head = [make("span", { class: "given", lang: "en", text: n.words }), make("span", { class: "figures", text: figures }),
+    ...(n.branch ? [make("span", { class: "branch", lang: "en", text: `${n.branch}?` })] : [])];
   const cls = [n.ruled_out_by ? "out" : "", n.flown ? "flown" : ""].join(" ").trim();
   if (!n.children.length) return make("li", { class: cls || null }, make("div", { class: "node" }, ...head));
   return make("li", { class: cls || null }, make("details", { open: depth < 3 && !n.ruled_out_by }, make("summary", { class: "node" }, ...head),
