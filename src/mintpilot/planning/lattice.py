@@ -85,6 +85,13 @@ def cost_of_moves(kinds: Sequence[int] | Ints) -> float:
     return float(kinds[1]) + float(kinds[2]) * 2**0.5 + float(kinds[3]) * 3**0.5
 
 
+def swept_cells(cells: Ints) -> Ints:
+    """All cells (m, 3) that a path of neighbouring cells (n, 3) touches, the side cells of diagonal moves included."""
+    corners = [np.where(np.array(pick, bool), cells[1:], cells[:-1]) for pick in np.ndindex(2, 2, 2)]
+    swept: Ints = np.unique(np.concatenate([cells[:1], *corners]), axis=0)
+    return swept
+
+
 def lattice_of(free: Bools, *, cut_corners: bool = False) -> Lattice:
     """The graph of a grid.
 

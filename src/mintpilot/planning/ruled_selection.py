@@ -10,19 +10,18 @@ from functools import cache
 
 import numpy as np
 
-from mintpilot.core.geometry import Floats, Ints
+from mintpilot.core.geometry import Ints
 from mintpilot.core.plan import LeftUndone, Shortage, Site, Stop
 from mintpilot.core.rule import Ruling
 from mintpilot.core.task import Action
 from mintpilot.core.tolerances import TOLERANCE
 from mintpilot.planning.decision_list import ParetoPath
-from mintpilot.planning.lattice import cost_of_moves, lattice_of
 from mintpilot.planning.legs import Cell3
-from mintpilot.planning.overlay import closed_moves
 from mintpilot.planning.route import Route
 from mintpilot.planning.rule_labels import RuleGrid
-from mintpilot.planning.rule_search import RuledWays, ways_from
-from mintpilot.planning.selection import Selection, Selector, picked_for
+from mintpilot.planning.ruled_legs import RuledLegs
+from mintpilot.planning.selection import Selection, Selector
+from mintpilot.planning.wanted_stops import WantedStops, wanted_stops
 
 MAX_LABELS = 20_000
 """So many (stops done, place, state of the rules) are followed before the best plan found so far is taken."""
@@ -60,34 +59,11 @@ class _Ending:
     homeward: int = 0
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class _Wanted:
-    """The stops that are chosen among: n of them."""
-
-    stops: tuple[Stop, ...]
-    places: tuple[Cell3 | None, ...]
-    before: tuple[int, ...]
-    """(n,) bit sets of the stops that must come before each."""
-    later: tuple[int, ...]
-    """(n,) bit sets of those that must not."""
-
-    def next(self, done: int) -> Iterator[tuple[int, Stop, Cell3]]:
-        """The stops that may come after those: number, stop, place."""
-        for i, (stop, place) in enumerate(zip(self.stops, self.places, strict=True)):
-            ready = not self.before[i] & ~done and not done & (self.later[i] | 1 << i)
-            if place is not None and ready:
-                yield i, stop, place
-
-    def left_s(self, done: int) -> float:
-        """Prices of the others, those of optional stops by their chance."""
-        return sum(stop.price_s * stop.chance for i, stop in enumerate(self.stops) if not done >> i & 1)
-
-
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class _Made:
     """A choice that was made."""
 
-    wanted: _Wanted
+    wanted: WantedStops
     blocked: int
     mask: int
     """Regions that it enters."""
@@ -110,16 +86,14 @@ class RuledSelector:
         self._itinerary = itinerary = plain.itinerary
         terrain, problem = itinerary.terrain, itinerary.problem
         self._grid = RuleGrid(ruling=ruling, map=problem.map, limits=problem.limits)
-        self._lattice = lattice_of(terrain.free)
-        self._kinds = self._grid.over(self._lattice)
-        self._regions = tuple(self._lattice.nodes_of_flat(r) for r in terrain.regions)
-        self._masks: Ints = np.zeros(terrain.frame.size, np.uint64)
-        for bit, cells in enumerate(terrain.regions):
-            self._masks[cells] |= np.uint64(1 << bit)
-        self._ways: dict[tuple[int, int, Cell3, int, int], RuledWays] = {}
+        self._legs = RuledLegs(self._grid, terrain)
         self._made: list[_Made] = []
-        self.searches = 0
         self.notes: set[str] = plain.notes
+
+    @property
+    def searches(self) -> int:
+        """Searches of grid and automaton made so far."""
+        return self._legs.searches
 
     def fits_alone(self, stop: Stop, blocked: int) -> bool:
         """See `Selector.fits_alone`."""
@@ -132,7 +106,7 @@ class RuledSelector:
         plain = self._plain.select(values, visits, blocked, uncertain)
         if plain is None or self._keeps(plain):
             return plain
-        wanted = self._wanted(values, (*self._itinerary.ordered, *visits))
+        wanted = wanted_stops(self._itinerary, values, (*self._itinerary.ordered, *visits))
         for one in self._made:
             # With fewer regions closed nothing is worse: what keeps out of these, too, is the best here.
             if one.wanted == wanted and not one.blocked & ~blocked and not one.mask & blocked:
@@ -149,34 +123,24 @@ class RuledSelector:
         middle = self._itinerary.terrain.frame.centres_of(np.array([start]))
         hop = np.vstack([np.asarray([self._itinerary.problem.start_m], float), middle])
         came = self._grid.flown(self._grid.number(self._ruling.states), hop, held)
-        return self._grid.followed(came, [self._flat(start)], held), held
+        return self._grid.followed(came, [self._legs.flat(start)], held), held
 
     def _keeps(self, found: Selection) -> bool:
         """Whether a plan made without regard to rules keeps them, its way home included."""
         rules, held = self._begun()
         place = self._itinerary.start
         for number, way in zip(found.route.order, found.route.paths, strict=True):
-            rules = self._grid.followed(rules, self._flats(way.path), held)
+            rules = self._grid.followed(rules, self._legs.flats(way.path), held)
             place = _cell(way.path[-1])
-            rules, held = self._grid.done(rules, self._flat(place), found.stops[number].id, held)
+            rules, held = self._grid.done(rules, self._legs.flat(place), found.stops[number].id, held)
         home = self._itinerary.home
         if home is not None and found.route.order:
             back = self._plain.legs.between(place, home).best(~found.homeward)
             if back is not None:
-                rules = self._grid.followed(rules, self._flats(back.path), held)
+                rules = self._grid.followed(rules, self._legs.flats(back.path), held)
         return self._grid.is_kept(rules)
 
-    def _wanted(self, values: Mapping[str, str], stops: tuple[Stop, ...]) -> _Wanted:
-        ids, ordered = [stop.id for stop in stops], sum(not stop.optional for stop in stops)
-        picks = [picked_for(stop, self._itinerary.ordered) for stop in stops]
-        return _Wanted(
-            stops=stops,
-            places=tuple(self._itinerary.place(stop, values) for stop in stops),
-            before=tuple(0 if pick is None else 1 << ids.index(pick.id) for pick in picks),
-            later=tuple((1 << ordered) - (2 << i) if i < ordered else 0 for i in range(len(stops))),
-        )
-
-    def _searched(self, plain: Selection, wanted: _Wanted, blocked: int, uncertain: int) -> Selection | None:
+    def _searched(self, plain: Selection, wanted: WantedStops, blocked: int, uncertain: int) -> Selection | None:
         """Labels in the order of the least that a route through them costs: the ways without rules bound the rest."""
         rules, held = self._begun()
         if rules < 0:
@@ -208,7 +172,7 @@ class RuledSelector:
                 heapq.heappush(heap, (after.cost_s + least(after.done, after.place), next(count), after))
         return None if best is None else self._chosen(plain, wanted.stops, best[1], best[2])
 
-    def _least(self, wanted: _Wanted, blocked: int) -> Callable[[int, Cell3], float]:
+    def _least(self, wanted: WantedStops, blocked: int) -> Callable[[int, Cell3], float]:
         """The least that any route still costs after some stops at a place, what it leaves undone counted, seconds."""
 
         @cache
@@ -223,13 +187,13 @@ class RuledSelector:
 
         return least
 
-    def _onward(self, here: _Label, wanted: _Wanted, blocked: int, uncertain: int) -> Iterator[_Label]:
+    def _onward(self, here: _Label, wanted: WantedStops, blocked: int, uncertain: int) -> Iterator[_Label]:
         """The labels after one more stop."""
-        ways = self._from(here, blocked, uncertain)
+        ways = self._legs.ways(here.place, here.rules, here.held, blocked, uncertain)
         for i, stop, place in wanted.next(here.done):
-            for state, _ in ways.at(self._lattice.node(place)):
-                way = self._way(ways, place, state)
-                after, held = self._grid.done(int(ways.sets[state]), self._flat(place), stop.id, here.held)
+            for state, _ in ways.at(self._legs.lattice.node(place)):
+                way = self._legs.path(ways, place, state)
+                after, held = self._grid.done(int(ways.sets[state]), self._legs.flat(place), stop.id, here.held)
                 cost_s = here.cost_s + way.cost * self._itinerary.edge_s + stop.dwell_s
                 if after >= 0 and cost_s <= self._plain.battery_s + TOLERANCE:
                     yield _Label(
@@ -247,20 +211,20 @@ class RuledSelector:
         spare_s = self._plain.battery_s - here.cost_s + TOLERANCE
         if self._itinerary.problem.home_m is None and self._grid.is_kept(here.rules):
             return _Ending()
-        ways = self._from(here, blocked, uncertain)
+        ways = self._legs.ways(here.place, here.rules, here.held, blocked, uncertain)
         kept = np.array([self._grid.is_kept(int(number)) for number in ways.sets])
-        cost = np.where(np.tile(kept, self._lattice.size), ways.cost, np.inf)
+        cost = np.where(np.tile(kept, self._legs.lattice.size), ways.cost, np.inf)
         if self._itinerary.problem.home_m is not None:
             if self._itinerary.home is None:
                 return None
-            first = self._lattice.node(self._itinerary.home) * len(kept)
+            first = self._legs.lattice.node(self._itinerary.home) * len(kept)
             row = first + int(np.argmin(cost[first : first + len(kept)]))
         else:
             row = int(np.argmin(np.round(cost, DECIMALS_S)))
         if not np.isfinite(cost[row]) or cost[row] * self._itinerary.edge_s > spare_s:
             return None
         node, state = divmod(row, len(kept))
-        way = self._way(ways, _cell(self._lattice.cells(np.array([node]))[0]), state)
+        way = self._legs.path(ways, _cell(self._legs.lattice.cells(np.array([node]))[0]), state)
         if self._itinerary.problem.home_m is None:
             return _Ending(hop_s=way.cost * self._itinerary.edge_s, hop=way)
         return _Ending(home_s=way.cost * self._itinerary.edge_s, homeward=way.mask)
@@ -302,39 +266,6 @@ class RuledSelector:
             homeward=ending.homeward,
             home_s=ending.home_s,
         )
-
-    def _from(self, here: _Label, blocked: int, uncertain: int) -> RuledWays:
-        key = (blocked, uncertain, here.place, here.rules, here.held)
-        if key not in self._ways:
-            cell = self._flat(here.place)
-            left = self._grid.after(here.rules, int(self._grid.kinds[cell]), here.held)
-            sets, table = self._grid.table(left, here.held)
-            closed = [r for i, r in enumerate(self._regions) if blocked >> i & 1]
-            doubtful: Floats = np.zeros(self._lattice.size)
-            for i, nodes in enumerate(self._regions):
-                doubtful[nodes] += uncertain >> i & 1
-            allowed = closed_moves(self._lattice, self._lattice.allowed, closed)
-            node = self._lattice.node(here.place)
-            if any(node in region for region in closed):
-                allowed = np.zeros_like(allowed)
-            self.searches += 1
-            self._ways[key] = ways_from(self._lattice, allowed, node, sets, table, self._kinds, doubtful)
-        return self._ways[key]
-
-    def _way(self, ways: RuledWays, place: Cell3, state: int) -> ParetoPath[Ints]:
-        cells = ways.path(self._lattice.node(place), state)
-        kinds = np.bincount(np.abs(np.diff(cells, axis=0)).sum(axis=1), minlength=4)
-        corners = [np.where(np.array(pick, bool), cells[1:], cells[:-1]) for pick in np.ndindex(2, 2, 2)]
-        swept = np.concatenate([cells[:1], *corners])
-        mask = int(np.bitwise_or.reduce(self._masks[self._flats(swept)]))
-        return ParetoPath(cost=cost_of_moves(kinds), mask=mask, path=cells)
-
-    def _flats(self, cells: Ints) -> Ints:
-        flat: Ints = np.ravel_multi_index(tuple(cells.T), self._itinerary.terrain.frame.shape).astype(np.int64)
-        return flat
-
-    def _flat(self, cell: Cell3) -> int:
-        return int(self._flats(np.array([cell], np.int64))[0])
 
 
 def _cell(cell: Ints) -> Cell3:

@@ -13,6 +13,7 @@ from mintpilot.core.plan import PlanningProblem
 from mintpilot.core.ports import Planner
 from mintpilot.planning.decision_list import DecisionList
 from mintpilot.planning.joint_search import Effort, JointSearch
+from mintpilot.planning.lattice import swept_cells
 from mintpilot.planning.lazy import lazy_paths
 from mintpilot.planning.plan_space import GridPlanSpace
 from mintpilot.planning.terrain import terrain_of
@@ -96,10 +97,3 @@ class _BlackBox:
         flat = np.ravel_multi_index(tuple(swept.T), free.shape)
         entered = frozenset(r for r, cells in enumerate(self._regions) if np.isin(flat, cells).any())
         return found[0], found[1], entered
-
-
-def swept_cells(cells: Ints) -> Ints:
-    """All cells (m, 3) that a path of neighbouring cells (n, 3) touches, the side cells of diagonal moves included."""
-    corners = [np.where(np.array(pick, bool), cells[1:], cells[:-1]) for pick in np.ndindex(2, 2, 2)]
-    swept: Ints = np.unique(np.concatenate([cells[:1], *corners]), axis=0)
-    return swept
