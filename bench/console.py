@@ -1,12 +1,13 @@
 """The web console in figures: pose latency, answer to next motion, share of a core, viewers, sizes of page and log.
 
-    python -m bench.console
+    python -m bench.console [--motions 10]
 
 Poses come at 10 Hz and pictures at 5 Hz; a headless Chromium notes when each pose arrives.
 """
 
 from __future__ import annotations
 
+import argparse
 import asyncio
 import json
 import os
@@ -40,7 +41,7 @@ from mintpilot.recording.mcap_log import MCAP_FILE
 
 SECONDS = 20.0
 VIEWERS, VIEWED_S = 10, 60.0
-MOTIONS, MOTION_MS = 10, 300.0
+MOTION_MS = 300.0
 ANSWERED_MS = {"at once": 700, "after 10 s": 10_000}
 BRAKING_MS = 1000 * VehicleLimits().cruise_mps / VehicleLimits().max_acceleration_mps2
 LATE_MS = 500.0
@@ -105,8 +106,8 @@ def latency(browser: Browser) -> tuple[np.ndarray, float]:
     return np.asarray([at - sent[time_s] for time_s, at in arrived.items() if time_s in sent]), share
 
 
-def viewers() -> list[float]:
-    """Milliseconds until each of ten viewers has each question, with poses and pictures going on."""
+def viewers() -> tuple[list[float], int]:
+    """Milliseconds until each of ten viewers has each question, with poses and pictures going on; how many came not."""
     camera = CameraModel(width=320, height=240, fx=277.0, fy=277.0, cx=160.0, cy=120.0)
     picture = np.random.default_rng(0).integers(0, 255, (240, 320, 3), np.uint8)
     depth = np.ones((240, 320), np.float32)
@@ -159,8 +160,7 @@ def viewers() -> list[float]:
 
     with made() as console:
         asyncio.run(all_of_them(console))
-    assert len(late) == VIEWERS * len(put), f"{len(late)} of {VIEWERS * len(put)} questions arrived"
-    return late
+    return late, VIEWERS * len(put) - len(late)
 
 
 def log_size() -> tuple[float, float]:
@@ -229,15 +229,19 @@ def to_motion(browser: Browser, mission: str, patience_ms: int) -> Reaction:
 
 
 def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--motions", type=int, default=10, help="missions that are answered for each figure")
+    motions_n = parser.parse_args().motions
     shipped = files("mintpilot.console").joinpath("static").iterdir()
     page_kb = sum(len(file.read_bytes()) for file in shipped) / 1000
     size, seconds = log_size()
-    late = np.asarray(viewers())
+    arrived, missed = viewers()
+    late = np.asarray(arrived)
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path="/usr/bin/chromium", args=FLAGS)
         poses, share = latency(browser)
         motions = {
-            (name, where): [to_motion(browser, name, ms) for _ in range(MOTIONS)]
+            (name, where): [to_motion(browser, name, ms) for _ in range(motions_n)]
             for name in DEMOS
             for where, ms in ANSWERED_MS.items()
         }
@@ -258,7 +262,7 @@ def main() -> None:
          f"p50 {np.percentile(poses, 50):.0f}, p95 {np.percentile(poses, 95):.0f} ms", f"{len(poses)}"),
         ("the program's share of one core at 10 Hz", "under 5 %", f"{100 * share:.1f} %", "1"),
         (f"question to each of {VIEWERS} viewers, {VIEWED_S:.0f} s", "none late",
-         f"{(late > LATE_MS).sum()} late; p50 {np.percentile(late, 50):.0f}, largest {late.max():.0f} ms",
+         f"{(late > LATE_MS).sum() + missed} late; p50 {np.percentile(late, 50):.0f}, largest {late.max():.0f} ms",
          f"{len(late)}"),
         *((what, f"under {MOTION_MS:.0f} ms",
            f"median {np.median(ms):.0f}, largest {max(ms):.0f} ms", f"{len(ms)}") for what, ms in waits),
@@ -271,9 +275,10 @@ def main() -> None:
         Section(
             name="59-console",
             title="Web console",
-            command="python -m bench.console",
+            command=f"python -m bench.console --motions {motions_n}",
             how="Headless Chromium and the program on one machine. Poses at 10 Hz, 320 x 240 pictures at 5 Hz; "
-            f"viewers are WebSocket clients, a question comes every 2 s and is late after {LATE_MS:.0f} ms. Key to "
+            "viewers are WebSocket clients, a question comes every 2 s, stands for 0.9 s, and is late after "
+            f"{LATE_MS:.0f} ms, or where it was over before it came. Key to "
             "flight: the demo missions, kinematic; each question is answered by a key 0.7 s after it was shown (at "
             "once: most often the drone flies already while it waits) or after 10 s (it is where it waits). Who flies "
             f"brakes first, which takes {BRAKING_MS:.0f} ms from cruise speed at the acceleration that the vehicle may "

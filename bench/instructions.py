@@ -6,7 +6,7 @@ import argparse
 import re
 from pathlib import Path
 
-from bench.sections import ROOT
+from bench.sections import ROOT, Section, Table, keep
 from mintpilot.assembly.registry import load
 from mintpilot.benchmark.instruction_trials import Score, read_rows, score, upper_bound
 from mintpilot.core.errors import InputError
@@ -25,6 +25,50 @@ def report(name: str, found: Score) -> None:
           f"refused {len(found.refused)}")  # fmt: skip
     for line in found.wrong:
         print(f"  wrong: {line}")
+
+
+LISTS = (
+    ("instructions", "written before the rules of November 2026 by their author, mended since"),
+    ("instructions_a", "first read after the grammar was made; what it showed was mended"),
+    ("instructions_b", "first read after that; the order of a search was mended, nothing else"),
+)
+NOTES = (
+    "At first reading, before anything was mended: list a 59 of 82 within the verbs as meant and none silently wrong; "
+    "list b 57 of 81, and 2 of 157 silently wrong: *check whether anybody is injured and come back* came back first "
+    "(refused since), *fly to my house* means the house (kept). Four more were flagged that mean the same in other "
+    "words; their references have that reading too now.",
+    "Both lists are by somebody who had read the rules before, not by strangers. The goal, none silently wrong within "
+    "1 % at 95 % on 300 that nobody mended after, is not shown by them.",
+    "Most refusals are one unknown word beside a known one (*the leaking valve*), which is a rule, and phrases.",
+)
+
+
+def keep_section() -> None:
+    """All lists that are kept with the project, by the rules alone, into the results."""
+    rows = []
+    for name, history in LISTS:
+        found = score(read_rows(DATA.with_name(f"{name}.tsv")), lambda text: parse_instruction(text, home_m=_HOME_M))
+        wrong = len(found.wrong)
+        share = f"{found.right} of {found.within} ({found.right / found.within:.1%})"
+        rows.append((name, history, str(found.n), str(wrong), f"{upper_bound(wrong, found.n):.2%}", share))
+    header = (
+        "list",
+        "history",
+        "n",
+        "silently wrong",
+        "exact upper bound, 95 %",
+        "as meant, of those within the verbs",
+    )
+    keep(
+        Section(
+            name="51-instructions",
+            title="Instructions, by the rules alone",
+            command="python -m bench.instructions --keep",
+            how="Instructions with the steps that they mean (`bench/data`). A refusal is never wrong.",
+            tables=[Table(caption="As they are read now", header=header, rows=rows)],
+            notes=NOTES,
+        )
+    )
 
 
 def plain_list(file: Path) -> None:
@@ -50,7 +94,11 @@ def main() -> None:
     parser.add_argument("--file", type=Path)
     parser.add_argument("--data", type=Path, default=DATA, help="another list with references")
     parser.add_argument("--refused", action="store_true", help="print what was refused though it is within the verbs")
+    parser.add_argument("--keep", action="store_true", help="put the figures of all lists into docs/results.md")
     options = parser.parse_args()
+    if options.keep:
+        keep_section()
+        return
     if options.file:
         plain_list(options.file)
         return

@@ -91,7 +91,7 @@ def verdicts(trials: Sequence[VoiceTrial]) -> list[str]:
     )
     found.append(
         "'Stop it' was added to the orders for holding after it had been heard here. Before, with the shorter decoding "
-        "of Whisper, the least probability of free text was set from 0.5 to 0.4; no threshold of short words was changed."
+        "of Whisper, the least probability of free text was set from 0.5 to 0.4. No threshold of short words changed."
     )
     return found
 

@@ -199,6 +199,8 @@ def section(trials: list[Trial], command: str) -> Section:
         notes=[
             f"The machine had {min(loads):.0f} to {max(loads):.0f} processes to run on {os.cpu_count()} cores. "
             "What passed on the clock is mostly waiting for a core; processor time is what an idle core takes at most.",
+            "Missions that ended without a flight ended so because 'confirm' was not understood twice, or because an "
+            "answer fell into a notice of the drone. The latter counts since; these missions were flown before.",
             *failed,
         ],
     )  # fmt: skip

@@ -146,6 +146,27 @@ def test_a_lost_link_is_said_and_loses_no_answer(browser):
         assert page.inner_text("#link") == ""
 
 
+def test_what_was_pressed_without_a_link_survives_a_reload_and_goes_to_no_other_mission(browser):
+    down = [True]
+    before = lambda page: page.route_web_socket(  # noqa: E731
+        "**/live", lambda link: link.close() if down and links else links.append(link.connect_to_server())
+    )
+    links: list[object] = []
+    with console() as one, opened(browser, one.url(), before=before) as seen:
+        page = seen.page
+        one.show(ASKED, 60.0)
+        ready(page)
+        links[-1].close()
+        page.wait_for_selector("#link.lost")
+        page.keyboard.press("n")
+        page.reload()
+        down.clear()
+        assert poll_until(one, page, lambda e: isinstance(e, Answered)).answer.reply is Reply.NO
+        waiting = "() => Object.entries(sessionStorage).filter(([key]) => key.startsWith('waiting'))"
+        page.wait_for_timeout(500)
+        assert page.evaluate(waiting) == [[f"waiting {one.url().split('#')[1]}", "[]"]]
+
+
 @pytest.mark.slow
 def test_a_reload_shows_the_question_again_and_keeps_the_seat(browser):
     with console() as one, opened(browser, one.url()) as seen:
@@ -195,6 +216,9 @@ def test_a_telephone_shows_all_of_it(browser, lang, scheme):
         ready(page)
         page.select_option("#lang", lang)
         assert page.evaluate("() => document.documentElement.scrollWidth") <= 360
+        page.evaluate("() => { document.documentElement.style.fontSize = '200%' }")
+        assert page.evaluate("() => document.documentElement.scrollWidth") <= 360, "twice as large"
+        page.evaluate("() => { document.documentElement.style.fontSize = '' }")
         for button in page.locator("#card .answer, #orders button").all():
             assert button.bounding_box()["height"] >= 40
         assert axe(page) == []

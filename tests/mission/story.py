@@ -7,14 +7,13 @@ track only, so that many stories cost little.
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterator
 from copy import copy
-from dataclasses import dataclass, field, fields, is_dataclass, replace
-from enum import Enum
+from dataclasses import dataclass, field, replace
 from functools import cache
 
 import numpy as np
 
+from kept import plain
 from mintpilot.assembly.briefing import briefing_of
 from mintpilot.assembly.components import Choices, DeliberationParts, deliberation_parts
 from mintpilot.conformance.sample import sample_world
@@ -43,6 +42,8 @@ from mintpilot.mission.step import initial_state, step
 from mintpilot.mission.worker import worked_out
 
 BATTERY_S = 300.0
+BEGINS_S = 7.0
+"""What the clock shows at first: not nothing, or half of all sums of times would be right by chance."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -103,7 +104,7 @@ class Story:
     kind: Kind
     state: MissionState
     map: SemanticMap
-    time_s: float = 0.0
+    time_s: float = BEGINS_S
     position: tuple[float, float, float] = (0.0, 0.0, 0.0)
     moving: Motion | None = None
     braking: bool = False
@@ -120,7 +121,7 @@ class Story:
 
     def vehicle(self) -> VehicleState:
         """As it reports itself: at rest."""
-        left_s = max(self.kind.endurance_s - self.time_s, 0.0)
+        left_s = max(self.kind.endurance_s - (self.time_s - BEGINS_S), 0.0)
         return VehicleState(
             time_s=self.time_s,
             position_m=self.position,
@@ -137,7 +138,7 @@ class Story:
         for directive in directives:
             self._carry_out(directive)
         self.lines = (*self.lines, " ".join(map(_short, directives)) or "-")
-        told = [*_plain(directives), *_plain(tuple(listener.heard[1:])), *_plain(self.state)]
+        told = [*plain(directives), *plain(tuple(listener.heard[1:])), *plain(self.state)]
         self.facts = (*self.facts, hashlib.sha256("\n".join(told).encode()).hexdigest()[:8])
 
     def _carry_out(self, directive: Directive) -> None:
@@ -276,14 +277,14 @@ def begun(kind: Kind) -> Story:
     briefing = briefing_of(parts, world.map) if kind.briefed else None
     setup = Setup(mission=mission, task=parts.task, surveys=kind.surveys, lands=kind.lands, briefing=briefing)
     vehicle = VehicleState(
-        time_s=0.0,
+        time_s=BEGINS_S,
         position_m=mission.start_m,
         velocity_mps=(0.0, 0.0, 0.0),
         yaw_rad=0.0,
         endurance_left_s=kind.endurance_s,
     )
     story = Story(kind=kind, state=initial_state(setup, vehicle), map=world.map, position=mission.start_m)
-    story.feed(MissionBegun(time_s=0.0, vehicle=vehicle))
+    story.feed(MissionBegun(time_s=BEGINS_S, vehicle=vehicle))
     return story
 
 
@@ -296,31 +297,3 @@ def _short(directive: Directive) -> str:
             return f"Deliberate({directive.request.purpose})"
         case _:
             return name
-
-
-def _plain(value: object, name: str = "") -> Iterator[str]:
-    """A value in lines: numbers to a tenth, arrays by shape and ends, no sentences."""
-    if isinstance(value, Enum):
-        yield f"{name}={value.value}"
-    elif isinstance(value, bool | int | None):
-        yield f"{name}={value}"
-    elif isinstance(value, float):
-        yield f"{name}={value:.1f}"
-    elif isinstance(value, str):
-        yield f"{name}={'…' if ' ' in value else value}"
-    elif isinstance(value, np.ndarray):
-        ends = "" if not value.size or value.dtype.kind not in "fi" else f" {value.min():.1f} {value.max():.1f}"
-        yield f"{name}={value.shape}{ends}"
-    elif is_dataclass(value):
-        yield f"{name}:{type(value).__name__}"
-        for one in fields(value):
-            if one.name not in ("setup", "cells", "frame", "mint", "objects"):
-                yield from _plain(getattr(value, one.name), f"{name}.{one.name}")
-    elif isinstance(value, dict):
-        for key in sorted(value, key=str):
-            yield from _plain(value[key], f"{name}[{key}]")
-    elif isinstance(value, frozenset | set):
-        yield f"{name}={sorted(map(str, value))}"
-    elif isinstance(value, tuple | list):
-        for i, one in enumerate(value):
-            yield from _plain(one, f"{name}[{i}]")

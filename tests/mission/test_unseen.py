@@ -21,7 +21,7 @@ from mintpilot.core.ports import Ask, Fly
 from mintpilot.core.query import Answer, Reply, answer_for
 from mintpilot.core.semantic_map import Cell, MapObject, SemanticMap
 from mintpilot.mission.rehearsal import begin
-from mintpilot.mission.unseen import MOST_LOOKS, MOST_ZONES, SEARCH, search_stop_id, unseen_zones
+from mintpilot.mission.unseen import LOOKS_A_ZONE, MOST_ZONES, SEARCH, search_stop_id, unseen_zones
 from mintpilot.mission_file.schema import MissionFile
 from mintpilot.planning.flyable import flyable_cells
 
@@ -92,7 +92,7 @@ def test_somebody_in_sight_ends_the_search():
 def test_a_zone_that_was_looked_around_in_often_enough_is_left_out():
     _, seen = searching(unseen_from_m=7.0, detour=True)
     zones = unseen_zones(seen, LIMITS, START_M)
-    done = [search_stop_id(zones[0].id, n + 1) for n in range(MOST_LOOKS)]
+    done = [search_stop_id(zones[0].id, n + 1) for n in range(LOOKS_A_ZONE)]
     assert zones[0].id not in {zone.id for zone in unseen_zones(seen, LIMITS, START_M, done)}
     assert zones[0].id in {zone.id for zone in unseen_zones(seen, LIMITS, START_M, done[:-1])}
 

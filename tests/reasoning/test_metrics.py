@@ -26,10 +26,11 @@ paths = st.integers(0, 2**32 - 1).map(
 
 def frechet(a: np.ndarray, b: np.ndarray) -> float:
     """The textbook recursion of Eiter and Mannila."""
+    one, other = a.tolist(), b.tolist()
 
     @cache
     def reach(i: int, j: int) -> float:
-        d = math.dist(a[i], b[j])
+        d = math.dist(one[i], other[j])
         earlier = [(i - 1, j), (i, j - 1), (i - 1, j - 1)]
         before = [reach(*e) for e in earlier if min(e) >= 0]
         return max(d, min(before)) if before else d

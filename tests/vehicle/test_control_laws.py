@@ -4,7 +4,15 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from mintpilot.conformance.faults.link_trial import COMMANDS, FAULTS, FLIGHT_S, MOST, PLACES, Happening, LinkFlight
+from mintpilot.conformance.faults.link_trial import (
+    COMMANDS,
+    FAULTS,
+    FLIGHT_S,
+    MOST_HAPPENINGS,
+    PLACES,
+    Happening,
+    LinkFlight,
+)
 from mintpilot.conformance.vehicle_double.faults import Fault
 from mintpilot.conformance.vehicle_double.parameters import Flavour
 from mintpilot.vehicle.course import SetPoint
@@ -14,7 +22,7 @@ times = st.floats(0.0, FLIGHT_S).map(lambda t: round(t, 2))
 happenings = st.lists(
     st.builds(Happening, at_s=times, what=st.sampled_from([*FAULTS, Fault.PILOT, Fault.SILENCE, *COMMANDS, *PLACES])),
     min_size=1,
-    max_size=MOST,
+    max_size=MOST_HAPPENINGS,
 ).map(lambda items: sorted(items, key=lambda item: item.at_s))
 
 

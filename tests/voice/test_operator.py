@@ -208,6 +208,23 @@ def test_speaking_into_the_question_stops_it_answers_nothing_and_it_is_asked_aga
     assert len(_answers(scene.says("no"))) == 1
 
 
+def test_an_answer_over_a_notice_after_the_question_counts(scene: Scene) -> None:
+    scene.asks()
+    scene.operator.tell("I hold.")
+    scene.passes(0.25)
+    assert scene.room.is_playing(scene.time_s)
+    assert len(_answers(scene.says("no"))) == 1
+
+
+def test_the_question_and_its_read_back_are_each_asked_once_more(scene: Scene) -> None:
+    question = scene.asks()
+    assert scene.says("banana") == []
+    assert len(_answers(scene.says("yes"))) == 1
+    scene.reads_back(question)
+    assert scene.says("banana") == []
+    assert len(_answers(scene.says("confirm"))) == 1
+
+
 def test_a_noise_into_the_question_does_not_leave_it_unasked(scene: Scene) -> None:
     scene.operator.show(replace(sample_question(GapKind.OBSTACLE), id="q1"), 30.0)
     scene.operator.poll(0.0)

@@ -242,9 +242,8 @@ class _Components(AbstractContextManager[MissionComponents]):
         before = builder.snapshot() if builder is not None else None
         vehicle = make_vehicle(world, choices.address, accept_failsafes=choices.accept_failsafes, known=before)
         self._stack.callback(vehicle.close)
-        beside = PartsBesideVehicle(
-            world=world, choices=choices, lang=self._talk.lang, names=tuple(self._talk.names.items())
-        )
+        names = tuple(self._talk.names.items())
+        beside = PartsBesideVehicle(world=world, choices=choices, lang=self._talk.lang, names=names)
         source: MapSource = GivenMap(world.map)
         camera: Camera | None = None
         if builder is not None:

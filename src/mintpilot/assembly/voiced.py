@@ -89,10 +89,12 @@ def _spoken_of(gap: KnowledgeGap) -> tuple[KnowledgeGap, ...]:
 
 
 def _queries(literals: tuple[Literal, ...]) -> list[Query]:
-    """Each by itself, and two attributes of one thing."""
-    pairs = combinations([x for x in literals if x.saying.kind is SayingKind.ATTRIBUTE], 2)
+    """Each by itself, and two of one gap: this or that, and of attributes also both at once."""
     single = [Query(literals=(literal,)) for literal in literals]
-    return single + [Query(literals=pair, combine=how) for pair in pairs for how in Combine]
+    pairs = [*combinations(literals, 2)]
+    either = [Query(literals=pair, combine=Combine.ANY) for pair in pairs]
+    attributes = [pair for pair in pairs if all(x.saying.kind is SayingKind.ATTRIBUTE for x in pair)]
+    return [*single, *either, *(Query(literals=pair, combine=Combine.ALL) for pair in attributes)]
 
 
 def loopback_operator(

@@ -145,8 +145,8 @@ def alone_clips(hours: float) -> list[Clip]:
 
     return [
         Clip(name=f"{source}/{number}", source=source, says=OTHER, samples=partial(make, number))
-        for source, make in (("rotors", rotors), ("silence", silence))
         for number in range(round(3600 * hours / ALONE_S))
+        for source, make in (("rotors", rotors), ("silence", silence))
     ]
 
 

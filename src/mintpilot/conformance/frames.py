@@ -11,7 +11,7 @@ from mintpilot.core.geometry import Box
 from mintpilot.core.observation import CameraModel, Frame, Segment
 from mintpilot.core.ports import FrameSource, Namer
 
-MOST = 20
+MOST_FRAMES = 20
 """Frames of a source that are looked at."""
 
 
@@ -36,7 +36,7 @@ def check_frame_source(make: Callable[[], FrameSource]) -> None:
         require(sound, source, "depth must be finite and not below 0; 0 means no return")
         pose = frame.source_from_camera
         require(pose is None or pose.shape == (4, 4), source, "a pose is a 4 x 4 matrix or None")
-        if number == MOST:
+        if number == MOST_FRAMES:
             break
     require(number > 0, source, "no frame; a source without any must raise MapError or DeviceError")
     said = source.remarks()

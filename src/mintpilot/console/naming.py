@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from mintpilot.language.tongues import TONGUES
-from mintpilot.language.translating import noun_phrase
+from mintpilot.wording.tongues import TONGUES
+from mintpilot.wording.translating import noun_phrase
 
 
 def named(english: str, lang: str) -> str:

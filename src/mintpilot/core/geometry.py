@@ -53,6 +53,11 @@ class Box:
         sides = zip(self.lo_m, self.hi_m, other.lo_m, other.hi_m, strict=True)
         return math.hypot(*(max(0.0, lo - top, bottom - hi) for lo, hi, bottom, top in sides))
 
+    def around(self, other: Box) -> Box:
+        """The smallest box that holds both."""
+        (x0, y0, z0), (x1, y1, z1) = map(min, self.lo_m, other.lo_m), map(max, self.hi_m, other.hi_m)
+        return Box(lo_m=(x0, y0, z0), hi_m=(x1, y1, z1))
+
     def contains(self, points_m: ArrayLike) -> Bools:
         """Which of the points (n, 3), or the one point (3,), are inside or on the surface."""
         points = np.atleast_2d(np.asarray(points_m, float))

@@ -6,7 +6,6 @@ import math
 from collections.abc import Sequence
 from dataclasses import replace
 
-from mintpilot.core.geometry import Box
 from mintpilot.core.observation import OBJECT, PERSON, NameGuess, chance_of
 from mintpilot.core.semantic_map import MapObject
 
@@ -27,7 +26,7 @@ def with_parts_counted(objects: Sequence[MapObject]) -> tuple[MapObject, ...]:
         group = [left.pop(0)]
         box = group[0].box_m
         for other in list(left):
-            whole = _around(box, other.box_m)
+            whole = box.around(other.box_m)
             if box.apart_m(other.box_m) < TOUCH_M and max(whole.size_m) <= LONGEST_M:
                 group.append(other)
                 left.remove(other)
@@ -44,9 +43,3 @@ def _as_person(thing: MapObject, chance: float) -> MapObject:
     names = [NameGuess(label=g.label, probability=g.probability * share) for g in thing.names if g.label != PERSON]
     names.append(NameGuess(label=PERSON, probability=chance))
     return replace(thing, names=tuple(sorted(names, key=lambda g: (-g.probability, g.label))))
-
-
-def _around(a: Box, b: Box) -> Box:
-    lo = tuple(min(x, y) for x, y in zip(a.lo_m, b.lo_m, strict=True))
-    hi = tuple(max(x, y) for x, y in zip(a.hi_m, b.hi_m, strict=True))
-    return Box(lo_m=(lo[0], lo[1], lo[2]), hi_m=(hi[0], hi[1], hi[2]))

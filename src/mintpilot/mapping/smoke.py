@@ -168,7 +168,7 @@ def _merged(clouds: list[Cloud], frame: GridFrame, free: Bools, settings: Mappin
         for b in clouds[i + 1 :]:
             if _is_one(a.box_m, b.box_m, frame, free, settings):
                 rest = [c for c in clouds if c is not a and c is not b]
-                joint = Cloud(box_m=_around(a.box_m, b.box_m), best_view=a.best_view or b.best_view)
+                joint = Cloud(box_m=a.box_m.around(b.box_m), best_view=a.best_view or b.best_view)
                 return _merged([*rest, joint], frame, free, settings)
     return clouds
 
@@ -177,10 +177,5 @@ def _is_one(a: Box, b: Box, frame: GridFrame, free: Bools, settings: MappingSett
     gap = float(np.max(np.maximum(np.subtract(a.lo_m, b.hi_m), np.subtract(b.lo_m, a.hi_m))))
     if gap < 0:
         return True
-    between = cells_in(frame, _around(a, b)) & ~cells_in(frame, a) & ~cells_in(frame, b)
+    between = cells_in(frame, a.around(b)) & ~cells_in(frame, a) & ~cells_in(frame, b)
     return gap <= settings.widest_inside_m and float(free[between].mean()) <= FREE_BETWEEN
-
-
-def _around(a: Box, b: Box) -> Box:
-    (x0, y0, z0), (x1, y1, z1) = np.minimum(a.lo_m, b.lo_m).tolist(), np.maximum(a.hi_m, b.hi_m).tolist()
-    return Box(lo_m=(x0, y0, z0), hi_m=(x1, y1, z1))

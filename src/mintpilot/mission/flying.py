@@ -16,14 +16,12 @@ from mintpilot.mission.requests import Purpose
 from mintpilot.mission.rule_progress import done, hoped
 from mintpilot.mission.sights import looked
 from mintpilot.mission.state import Activity, Ending, Goal, uncertain_things
-from mintpilot.mission.surveying import SWEEP_RAD, turn
+from mintpilot.mission.surveying import MAX_HOPS, SWEEP_RAD, turn
 from mintpilot.mission.transition import Transition, partial_reason
 from mintpilot.mission.unseen import is_search
 
 MAX_REPLANS = 8
 """How often news in flight may send the drone back to deliberating before it goes home."""
-MAX_HOPS = 6
-"""Flights towards the start or a landing place, when news keep stopping the drone on its way."""
 
 
 def fly_plan(t: Transition, plan: Plan, *, unsafe: bool = False) -> None:

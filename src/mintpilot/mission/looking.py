@@ -17,7 +17,7 @@ from mintpilot.planning.reach import way_to
 from mintpilot.uncertainty.gaps import LOOK_REACH_M
 
 _PREFIX = "sense:"
-MOST_LOOKS = 6
+MOST_WEIGHED = 6
 """So many looks are weighed at a time, those stated first."""
 
 
@@ -36,7 +36,7 @@ def look_options(
         finished: ids of stops that were done: a look is tried once.
     """
     wanted = [one for one in looks if look_stop_id(one) not in finished and any(g.id == one.gap for g in problem.gaps)]
-    return tuple(_options(problem, space, planner, wanted[:MOST_LOOKS]))
+    return tuple(_options(problem, space, planner, wanted[:MOST_WEIGHED]))
 
 
 def look_stop_id(look: Look) -> str:

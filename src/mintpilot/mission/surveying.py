@@ -21,7 +21,7 @@ TURN_RATE_RADPS = 1.6
 SWEEP_RAD = 2 * math.pi
 """A full turn at each place."""
 MAX_HOPS = 6
-"""Flights towards the start, when news keep stopping the drone on its way."""
+"""Flights towards the start or a landing place, when news keep stopping the drone on its way."""
 _SAMPLE_S = 0.02
 
 

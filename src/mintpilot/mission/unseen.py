@@ -23,7 +23,7 @@ from mintpilot.uncertainty.gaps import LOOK_REACH_M
 SEARCH = target_id(0, "unseen")
 """Id of the gap that asks where the sought thing is."""
 MOST_ZONES = 6
-MOST_LOOKS = 2
+LOOKS_A_ZONE = 2
 """A zone is looked around in so often; what could not be seen then cannot be seen."""
 HERE = 0.5
 """Probability, before anything was seen, that what is sought is here at all."""
@@ -96,7 +96,7 @@ def unseen_zones(
         map: what is known.
         limits: size of the vehicle.
         start_m: where it is, metres.
-        finished: ids of stops that were done: a zone that was looked around in `MOST_LOOKS` times is left out.
+        finished: ids of stops that were done: a zone that was looked around in `LOOKS_A_ZONE` times is left out.
     """
     look = LookAround()
     cells, clouded = _places(map, limits, start_m, look)
@@ -109,7 +109,7 @@ def unseen_zones(
     for tile in sorted(set(tiles.tolist())):
         best = int(np.argmax(np.where(tiles == tile, gain_m3, -1.0)))
         name = f"zone-{tile + 1}"
-        if gain_m3[best] >= look.least_gain_m3 and _looks(name, finished) < MOST_LOOKS:
+        if gain_m3[best] >= look.least_gain_m3 and _looks(name, finished) < LOOKS_A_ZONE:
             x, y, z = (float(v) for v in centres[best])
             zones.append(Zone(id=name, viewpoint_m=(x, y, z), unseen_m3=float(gain_m3[best])))
     return tuple(zones)

@@ -222,5 +222,6 @@ def names_in(world: World | None, language: str) -> dict[str, str]:
     """What the file calls regions and rooms in that language, by their English words; only where it says so."""
     if not isinstance(world, MapWorld):
         return {}
-    said = ((in_english(d), d) for d in (one.description for one in (*world.regions, *world.rooms)))
+    described = [*(r.description for r in world.regions), *(r.description for r in world.rooms)]
+    said = ((in_english(d), d) for d in described)
     return {english: d[lang] for english, d in said if isinstance(d, dict) for lang in d if lang == language}

@@ -17,7 +17,7 @@ LEAST_PAIRS = 20
 """With fewer examples of a label nothing is known of its confidences, and they stay as they are."""
 RIDGE = 2.0
 """Weight of the confidences as they were, in examples."""
-MOST = 0.88
+MOST_CERTAIN = 0.88
 """What is never seen to be wrong among some hundred examples is not certain: so likely it is at most."""
 _EDGE = 1e-4
 
@@ -73,7 +73,7 @@ class CalibratedNamer(Namer):
         scale = self._scales.get(guess.label)
         if scale is None:
             return guess.probability
-        most = guess.probability if self._only_lowers else max(MOST, guess.probability)
+        most = guess.probability if self._only_lowers else max(MOST_CERTAIN, guess.probability)
         return min(most, _logistic(scale.scale * _odds(guess.probability) + scale.shift))
 
 

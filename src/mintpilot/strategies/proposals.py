@@ -21,7 +21,7 @@ from mintpilot.strategies.flying import answerable
 
 MARGIN_BITS = 0.05
 """A query that is so near to the bound on gain leaves nothing worth waiting for."""
-MOST = 20
+MOST_PROPOSALS = 20
 """Proposals looked at."""
 EXACT_CLASSES = 12
 """Up to so many plan classes the bound on the gain of yes/no queries is the best division of their masses in two."""
@@ -98,7 +98,7 @@ def sound_proposals(situation: Situation, mint: Mint, proposed: Sequence[Query])
     spent = {one.query.id for one in situation.asked}
     known = {_key(query, mint) for query in candidate_queries(mint, start_m=start_m, kinds=situation.settings.kinds)}
     sound: list[Query] = []
-    for query in proposed[:MOST]:
+    for query in proposed[:MOST_PROPOSALS]:
         spoken = all(x.gap in gaps and x in language[x.gap] for x in query.every_literal)
         if not spoken or query.id in spent or is_refused(query, situation.withdrawn) or not is_sayable(query, gaps):
             continue

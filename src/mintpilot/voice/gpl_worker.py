@@ -81,6 +81,7 @@ def main() -> None:
     sys.stdout = sys.stderr  # a library that prints must not spoil the samples
     try:
         say = {"piper": piper, "espeak": espeak}[sys.argv[1]]()
+        say("Ready.", "en", 1.0)  # what is loaded at the first text is loaded now
     except Exception as error:  # told to who started this, in the message's place
         _answer(out, b"", str(error))
         return

@@ -132,7 +132,7 @@ class VoiceOperator(Operator):
             self._turn = turn = _Turn(question, patience_s)
             self._ask(turn, question.text)
         elif question.read_back is not None:
-            turn.question = question
+            turn.question, turn.asked_again = question, False
             self._ask(turn, _read_back(question, question.read_back))
         else:
             turn.question = question
@@ -214,9 +214,9 @@ class VoiceOperator(Operator):
                 self._recognise(utterance)
 
     def _somebody_begins(self, time_s: float) -> None:
-        turn, interrupts = self._turn, self._parts.link.is_playing(time_s)
-        self._began = turn.key if turn is not None and not interrupts else None
-        if interrupts:
+        turn = self._turn
+        self._began = turn.key if turn is not None else None  # over a notice the question is answered all the same
+        if self._parts.link.is_playing(time_s):
             self._mouth.interrupt()
 
     def _recognise(self, utterance: Utterance) -> None:

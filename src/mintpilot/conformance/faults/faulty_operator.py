@@ -16,7 +16,7 @@ from mintpilot.core.query import Answer, Evidence, Order, Question, Reply, Stand
 
 FLOOD = 120
 """Most things that come at once."""
-MOST = 2500
+MOST_FLOODED = 2500
 """No flood brings more than this in all."""
 LONGEST_WORDS = 20_000
 
@@ -69,7 +69,7 @@ class FaultyOperator(Operator):
         self._again = [item for item in self._again if item[0] > self._ledger.now_s]
         events += [replace(event, time_s=time_s) for event in due]
         events += self._orders(time_s)
-        if self._on(FaultKind.FLOODING) and self._flooded < MOST:
+        if self._on(FaultKind.FLOODING) and self._flooded < MOST_FLOODED:
             flood = self._flood(time_s)
             self._flooded += len(flood)
             events += flood

@@ -34,7 +34,7 @@ PLACES: Final[tuple[Vec3, ...]] = (
 )  # fmt: skip
 FLIGHT_S: Final = 20.0
 AFTER_S: Final = 40.0
-MOST: Final = 8
+MOST_HAPPENINGS: Final = 8
 """Things that happen in one flight."""
 
 What: TypeAlias = Fault | str | Vec3
@@ -159,7 +159,7 @@ def fly_link(draw: Draw) -> FaultRecord:
     kinds: list[What] = [*FAULTS, Fault.PILOT, Fault.SILENCE, *COMMANDS, *PLACES]
     happened = [
         Happening(at_s=round(float(rng.uniform(0, FLIGHT_S)), 2), what=kinds[int(rng.integers(len(kinds)))])
-        for _ in range(1 + int(rng.integers(MOST)))
+        for _ in range(1 + int(rng.integers(MOST_HAPPENINGS)))
     ]
     flight = LinkFlight(
         flavour=list(Flavour)[int(rng.integers(2))],

@@ -1,19 +1,18 @@
 """What the mission does next, in every phase and after every kind of disturbance, is what it did before.
 
 `stories.txt` keeps a line for each: the directives of the steps that follow, how it stands then, and a digest of all
-that was said, kept for the record and changed. A change of any of it is a change of behaviour: look at it, and keep it
-with ``MINTPILOT_STORIES=keep``.
+that was said, kept for the record and changed (`kept`).
 """
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable
 from functools import cache, partial
 from pathlib import Path
 
 import pytest
 
+from kept import same_as_kept
 from mintpilot.core.inputs import (
     Answered,
     FactConfirmed,
@@ -255,17 +254,6 @@ def story_of(phase: str, event: str) -> str:
     return story.told(since)
 
 
-@cache
-def kept() -> dict[str, str]:
-    lines = KEPT.read_text(encoding="utf-8").splitlines() if KEPT.exists() else []
-    return dict(line.split(": ", 1) for line in lines)
-
-
 @pytest.mark.parametrize("event", EVENTS)
 def test_the_mission_does_what_it_did(event: str) -> None:
-    found = {f"{phase} + {event}": story_of(phase, event) for phase in PHASES}
-    if os.environ.get("MINTPILOT_STORIES") == "keep":
-        kept().update(found)
-        KEPT.write_text("".join(f"{name}: {line}\n" for name, line in sorted(kept().items())), encoding="utf-8")
-    else:
-        assert found == {name: kept().get(name) for name in found}
+    same_as_kept(KEPT, {f"{phase} + {event}": story_of(phase, event) for phase in PHASES})
