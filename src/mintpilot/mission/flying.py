@@ -13,7 +13,7 @@ from mintpilot.core.plan import LeftUndone, Leg, Plan, Stop
 from mintpilot.core.task import Action
 from mintpilot.mission.outlasting import outlasted
 from mintpilot.mission.requests import Purpose
-from mintpilot.mission.rule_progress import done
+from mintpilot.mission.rule_progress import done, hoped
 from mintpilot.mission.sights import looked
 from mintpilot.mission.state import Activity, Ending, Goal, uncertain_things
 from mintpilot.mission.surveying import MAX_HOPS, SWEEP_RAD, turn
@@ -143,6 +143,8 @@ def mark_done(t: Transition, stop: Stop) -> None:
     if task is not None and task.rules:
         here = np.asarray(t.state.vehicle.position_m, float)
         progress = done(task, t.beliefs.progress, t.beliefs.map, setup.mission.limits, stop, here)
+        if progress.held != hoped(task, t.beliefs.progress, t.beliefs.map, stop):
+            t.set(outdated=True)  # nothing was to be seen: the plan counted on it
         t.set(beliefs=replace(t.beliefs, progress=progress))
     begun_s = t.state.clock_s if t.state.task_begun_s is None else t.state.task_begun_s
     t.set(beliefs=replace(t.beliefs, finished=t.beliefs.finished | {stop.id}))

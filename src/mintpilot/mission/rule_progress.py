@@ -54,3 +54,9 @@ def done(
     for now in stop_letters.moments(progress.held):
         states = rules.automaton.followed(states, stay, now)
     return RuleProgress(states=states, held=stop_letters.after(progress.held))
+
+
+def hoped(task: Task, progress: RuleProgress, map: SemanticMap, stop: Stop) -> int:
+    """Bits of the propositions of stops that hold once a stop is done, if there is all to be seen from it."""
+    rules = ruling(task, progress, map)
+    return progress.held if rules is None else letters_of(stop, map, task, rules.automaton).after(progress.held)

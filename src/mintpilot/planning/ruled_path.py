@@ -40,14 +40,9 @@ def ruled_path(
 ) -> Floats | None:
     """The shortest way through known flyable space that keeps all rules if the flight ends there; None: none does."""
     free = known_flyable(map, limits)
-    goal = map.frame.cells_of(np.array([goal_m]))[0]
-    if map.frame.is_flat:
-        goal[0] = 0
     try:
-        start = start_cell(map, limits, free, start_m)
+        start, goal = start_cell(map, limits, free, start_m), start_cell(map, limits, free, goal_m)
     except InfeasibleError:
-        return None
-    if not map.frame.contains(goal[None])[0] or not free[tuple(goal)]:
         return None
     grid, lattice = RuleGrid(ruling=ruling, map=map, limits=limits), lattice_of(free)
     flat = int(np.ravel_multi_index(tuple(start), map.frame.shape))

@@ -41,7 +41,10 @@ def ruling_of(
         states: of the automaton that the mission may be in.
         held: bits of the propositions of stops that hold now.
     """
-    letters = [(stop.id, letters_of(stop, map, task, automaton)) for stop in stops]
+    letters = [
+        (stop.id, letters_of(stop, map, task, automaton, seen_from_m=np.asarray(stop.sites[0].position_m)))
+        for stop in stops
+    ]
     return Ruling(
         rules=task.rules,
         automaton=automaton,
@@ -62,8 +65,8 @@ def letters_of(
         map: what is believed of the world.
         task: whose stops and rules these are.
         automaton: of these rules together.
-        seen_from_m: where it was done (3,), metres: a room that cannot be seen from there was not looked into. None: it
-            is still to be done, and hoped to be seen.
+        seen_from_m: where it is done (3,), metres: a room that cannot be seen from there is not looked into. None: that
+            does not matter.
     """
     at = begins = ends = 0
     for bit, what in enumerate(automaton.propositions):
