@@ -276,7 +276,8 @@ def listed_words(world: MapWorld | ScenarioWorld | SceneWorld | SeenWorld) -> fr
         return frozenset()
     objects = world.objects
     said = [o.label for o in objects] + [v for o in objects for values in o.attributes.values() for v in values]
-    said += [in_english(one.description) for one in (*world.rooms, *world.regions)]
+    said += [in_english(room.description) for room in world.rooms]
+    said += [in_english(region.description) for region in world.regions]
     return frozenset(word for text in said for word in text.lower().replace("_", " ").split())
 
 
