@@ -121,8 +121,7 @@ def test_a_region_is_drawn_told_of_confirmed_and_undone(browser):
             assert poll_until(one, page, lambda e: isinstance(e, FactUndone)).told == "told-1"
             assert page.locator("#told .over").count() == 1
             one.record(FactsChanged(told=(fact(1, told.fact, Standing.UNDO_READ_BACK, ""),)))
-            page.wait_for_selector("#back .understood")
-            assert "counts no longer: Keep out of the drawn region" in page.inner_text("#back")
+            page.wait_for_selector("#back .understood:has-text('counts no longer: Keep out of the drawn region')")
             assert page.locator("#told button").count() == 0, "it is asked once"
             assert "understood" in page.evaluate("() => document.activeElement.className"), (
                 "where what was pressed is gone"

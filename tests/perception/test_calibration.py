@@ -14,7 +14,7 @@ from mintpilot.core.observation import Frame, NameGuess, Segment
 from mintpilot.core.ports import Namer
 from mintpilot.perception.calibration import (
     LEAST_PAIRS,
-    MOST,
+    MOST_CERTAIN,
     CalibratedNamer,
     Calibration,
     LabelScale,
@@ -70,7 +70,7 @@ def test_what_was_found_in_drawn_rooms_takes_certainty_away_and_never_gives_any(
 def test_what_was_never_wrong_is_not_certain() -> None:
     scale = fit([0.6] * 400, [True] * 400)
     assert scale is not None
-    assert said_by(CalibratedNamer(Says(person=0.6), {"person": scale}))["person"] == MOST
+    assert said_by(CalibratedNamer(Says(person=0.6), {"person": scale}))["person"] == MOST_CERTAIN
     assert said_by(CalibratedNamer(Says(person=0.97), {"person": scale}))["person"] == 0.97
 
 
