@@ -220,3 +220,31 @@ def test_a_room_is_looked_into_only_where_its_door_can_be_seen(smoke, wall, seen
     trace.fly(np.stack([at_m - (0.5, 0, 0), at_m]))
     trace.do("look:room")
     assert bool(trace.of("looked", "room", 0.0)[-1]) is seen
+
+
+@pytest.mark.parametrize("hidden", [False, True])
+def test_no_plan_counts_on_a_look_from_where_the_door_is_hidden(tmp_path, hidden):
+    """A wall between viewpoint and door: what must come after the look is not flown to."""
+    rows = [list("." * 24) for _ in range(16)]
+    for y in range(4, 12):
+        rows[y][20] = "@"  # the room's front
+        if hidden:
+            rows[y][18] = "@"
+    (tmp_path / "hall.map").write_text(
+        "type octile\nheight 16\nwidth 24\nmap\n" + "".join("".join(row) + "\n" for row in rows)
+    )
+    room = (
+        "  rooms: [{id: room-1, description: the closed room, door: {lo_m: [9.9, 3.5, 0], hi_m: [10.1, 4.5, 2]}, "
+        "viewpoint_m: [7.75, 4.25], truth: present}]\n"
+    )
+    text = FILE.format(rule="{first: looked(room-1), then: at(near)}", returns="none")
+    text = text.replace("goals:", room + "seeks_people: true\ngoals:")
+    (tmp_path / "m.yaml").write_text(text)
+    world, heard = build_world(read_mission(tmp_path / "m.yaml"), base=tmp_path, seed=0), Listener()
+    with components_for(world, Choices(vehicle="kinematic"), operators=(), recorder=heard) as made:
+        verdict = fly_mission(made)
+    assert not verdict.rules_broken
+    came_to = {leg.stop_id for leg in heard.flown if leg.phase == "mission"}
+    near = next(f"go:{i}" for i, goal in enumerate(world.task.subgoals, 1) if goal.id == "near")
+    assert (near in came_to) is not hidden
+    assert (verdict.outcome is Outcome.NO_SAFE_PLAN) is hidden  # the rule demands the look
