@@ -248,3 +248,4 @@ def test_no_plan_counts_on_a_look_from_where_the_door_is_hidden(tmp_path, hidden
     near = next(f"go:{i}" for i, goal in enumerate(world.task.subgoals, 1) if goal.id == "near")
     assert (near in came_to) is not hidden
     assert (verdict.outcome is Outcome.NO_SAFE_PLAN) is hidden  # the rule demands the look
+    assert {one.resource for one in verdict.left} == ({"rule"} if hidden else set())

@@ -20,7 +20,14 @@ def nothing_done(problem: PlanningProblem, planner: Planner) -> tuple[LeftUndone
     ample = replace(problem, limits=replace(problem.limits, endurance_s=math.inf, reserve_s=0.0))
     found = []
     for number, stop in enumerate(problem.stops):
-        needed_s = _alone_s(replace(ample, stops=(stop,)), planner) if number < MOST_STOPS else None
+        alone = replace(ample, stops=(stop,))
+        needed_s = _alone_s(alone, planner) if number < MOST_STOPS else None
+        if needed_s is None and problem.ruling is not None and number < MOST_STOPS:
+            without_s = _alone_s(replace(alone, ruling=None), planner)
+            if without_s is not None and without_s <= battery_s:
+                rules = tuple(rule.text for rule in problem.ruling.rules)
+                found.append(LeftUndone(stop=stop, resource=Shortage.RULE, rules=rules))
+                continue
         if needed_s is None or needed_s <= battery_s:
             found.append(LeftUndone(stop=stop, resource=Shortage.WAY))
         else:
