@@ -89,8 +89,8 @@ def _continues(wall: Patch, other: Patch) -> bool:
 
 def _straight_on(view: View, scene: Scene, group: Sequence[Body], floor_m: float) -> WallPicture | None:
     points = scene.surfaces.points_m
-    own = points[group[0].mask]
-    own = as_floats(own[:: max(1, len(own) // SAMPLE)])
+    main = points[group[0].mask]
+    own = as_floats(main[:: max(1, len(main) // SAMPLE)])
     normal, offset = _upright_plane(own, view.frame.world_from_camera[:3, 3])
     along = np.array([-normal[1], normal[0], 0.0])
     every = np.concatenate([points[b.mask] for b in group])[::3] @ along.astype(np.float32)
