@@ -8,6 +8,7 @@ from people_to_see import POSTURES, picture_of, posture
 from scenes import Block, picture
 
 from mintpilot.core.observation import OBJECT, Detection, Frame
+from mintpilot.perception import lump_weights, lumps
 from mintpilot.perception.door_frames import EVIDENCE
 from mintpilot.perception.door_weights import WEIGHTS
 from mintpilot.perception.segments import SegmentPerception
@@ -116,8 +117,9 @@ def test_a_shut_door_between_panels_as_wide_as_it_is_one_door() -> None:
     assert np.linalg.norm(np.asarray(likely[0].position_m)[:2] - (4.0, 0.05)) < 0.15
 
 
-def test_every_piece_of_evidence_for_a_door_has_its_weight() -> None:
+def test_every_piece_of_evidence_has_its_weight() -> None:
     assert tuple(name for name, _ in WEIGHTS) == EVIDENCE
+    assert tuple(name for name, _ in lump_weights.WEIGHTS) == lumps.FEATURES
 
 
 def test_a_bare_wall_has_no_door_and_a_sunlit_floor_no_fire() -> None:
