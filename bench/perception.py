@@ -115,10 +115,10 @@ FIRST_RUN = (
 """What was measured before the rules were changed; it cannot be measured again."""
 
 SECOND = (
-    "Doors are told by logistic regression on the frames of 200 rooms, and lumps that may be people on the segments of 100, "
-    "all of the tuned styles, other rooms than the ones measured here. This table is the first run of `library`, and the "
-    "first run after that of `clinic` and `home`; none of them was looked at in between. What was paid for the people "
-    "found is in the row of false questions."
+    "Doors are told by logistic regression on the frames of 200 rooms, and lumps that may be people on the segments of "
+    "100, all of the tuned styles, other rooms than the ones measured here. This table is the first run of `library`, "
+    "and the first one of `clinic` and `home` since then; none of them was looked at in between. What was paid for the "
+    "people found is in the row of false questions."
 )
 """What chose the rules of doors and people."""
 
@@ -158,8 +158,9 @@ def section(real: Rows, groups: Mapping[str, Sequence[PerceptionRow]], scenes: i
         how="Perception `segments` with the namer `geometry`, no model. Rooms: rendered RGB-D with noise, eight looks "
         "each; what no picture shows whole is not counted. *Tuned* styles chose the rules; *held back* ones were "
         "written by who wrote the rules and chose none; *fresh* ones were written by somebody who had not seen the "
-        "rules, and chose none; the *blind* one was written by who knew the rules, from a description of the place, and "
-        "committed before any picture of it was perceived. A person counts as found where the drone says so or asks about it.",
+        "rules, and chose none; the *blind* one was written by who knew the rules, from a description of the place, "
+        "and committed before any picture of it was perceived. A person counts as found where the drone says so or "
+        "asks about it.",
         tables=tables,
         notes=[FIRST_RUN, SECOND, *speed],
     )
