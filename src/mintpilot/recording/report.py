@@ -22,6 +22,7 @@ from mintpilot.recording.spoken import heading, outcome_words
 from mintpilot.recording.tree_drawing import percent
 from mintpilot.recording.tree_svg import tree_svg
 
+REPORT_FILE = "report.html"
 MAX_PICTURES = 18
 """Close-ups shown; what bears on a gap comes first."""
 _REPLY_WORDS = {Reply.YES: "Yes", Reply.NO: "No", Reply.UNSURE: "Don't know", Reply.TIMEOUT: "No answer"}

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Iterator
+from pathlib import Path
 
 from rich.console import Console, Group, RenderableType
 from rich.table import Table
@@ -13,7 +14,7 @@ from mintpilot.core.mission import Outcome, Sight
 from mintpilot.core.query import Reply
 from mintpilot.recording.people import look_line, people_lines
 from mintpilot.recording.record import GapRecord, MissionRecord, QuestionRecord
-from mintpilot.recording.report import consequence, number, reply_words, weightiest_first
+from mintpilot.recording.report import REPORT_FILE, consequence, number, reply_words, weightiest_first
 from mintpilot.recording.spoken import heading, outcome_words
 from mintpilot.recording.tree_drawing import tree_text
 from mintpilot.recording.words import printable
@@ -141,8 +142,8 @@ def _flown(record: MissionRecord) -> RenderableType:
     )
     lines.extend(_plain(f"left undone: {one.text} ({one.reason})", "yellow") for one in record.left)
     lines.extend(_plain(f"! {notice.text}", "yellow") for notice in record.notices)
-    if record.run_dir:
-        lines.append(Text(f"Report: {printable(record.run_dir)}/report.html", "bold", overflow="fold"))
+    if record.run_dir and (Path(record.run_dir) / REPORT_FILE).is_file():
+        lines.append(Text(f"Report: {printable(record.run_dir)}/{REPORT_FILE}", "bold", overflow="fold"))
     return _section(record, "What it flew", lines)
 
 
