@@ -105,7 +105,8 @@ def test_it_must_fit_the_place_and_a_camera_must_look_again(run: Path, tmp_path:
     with pytest.raises(MapError, match="another lattice"):
         builder.begin_with(earlier_map(run).map)
     with pytest.raises(InputError, match="needs a camera"):
-        run_mission(hall(), vehicle="kinematic", earlier=run)
+        run_mission(hall(), vehicle="kinematic", earlier=run, out=tmp_path / "refused")
+    assert not (tmp_path / "refused").exists(), "what is refused leaves no run behind"
     with pytest.raises(RecordError):
         earlier_map(tmp_path)
 

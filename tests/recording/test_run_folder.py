@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import json
 import os
 import resource
@@ -15,6 +16,7 @@ from pathlib import Path
 
 import pytest
 from PIL import Image
+from rich.console import Console
 
 from mintpilot.core.errors import RecordError
 from mintpilot.core.events import Deliberated, LegFlown, MapUpdated, PlanChosen
@@ -23,6 +25,7 @@ from mintpilot.recording.event_log import read_event_log
 from mintpilot.recording.record import read_record
 from mintpilot.recording.recorders import MemoryRecorder, NullRecorder, TeeRecorder
 from mintpilot.recording.run_folder import RunFolder, new_run_path
+from mintpilot.recording.terminal_report import print_report
 
 HERE = Path(__file__).parent
 CHILD = """
@@ -153,6 +156,25 @@ def test_a_full_disk_is_noted_and_the_mission_goes_on(tmp_path):
     assert numbers[-3:] == [numbers[-1] - 2, numbers[-1] - 1, numbers[-1]]
     notices = {n.kind: n.text for n in read_record(tmp_path / "run").notices}
     assert "could not be written" in notices["record-incomplete"]
+
+
+def test_what_the_disk_does_not_take_whole_is_not_there_at_all(tmp_path):
+    """The limit comes back before the drawings: neither half a report nor an empty one is left, and none is named."""
+    hard = resource.getrlimit(resource.RLIMIT_FSIZE)[1]
+    full = f"signal.signal(signal.SIGXFSZ, signal.SIG_IGN)\nresource.setrlimit(resource.RLIMIT_FSIZE, (30000, {hard}))"
+    process = child(tmp_path / "run", end=f"{full}\nfolder.close()")
+    assert process.communicate(timeout=60)[0] == b""
+    record = read_record(tmp_path / "run")
+    (lost,) = [n.text for n in record.notices if n.kind == "record-incomplete"]
+    assert "report.html (File too large)" in lost
+    left = {p.name for p in (tmp_path / "run").iterdir()}
+    assert "report.html" not in left
+    assert "tree.txt" in left
+    assert all(p.stat().st_size for p in (tmp_path / "run").iterdir() if p.is_file())
+    told = io.StringIO()
+    print_report(record, Console(width=100, file=told))
+    assert "What it flew" in told.getvalue()
+    assert "Report:" not in told.getvalue()
 
 
 def test_a_folder_that_cannot_be_written_is_refused_before_the_mission(tmp_path):

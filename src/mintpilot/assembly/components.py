@@ -140,6 +140,36 @@ def scripted_operator(world: World, spec: OperatorSpec) -> ScriptedOperator:
     )
 
 
+def check_choices(world: World, choices: Choices, operators: tuple[Operator, ...]) -> None:
+    """Whether those parts can fly that mission; told before anything is made or kept.
+
+    Raises:
+        InputError: the vehicle has no camera and needs one, the camera does not go with it, or nobody can say go.
+    """
+    real = choices.vehicle is VehicleChoice.MAVLINK
+    if choices.camera and not real:
+        raise InputError(
+            f"--camera {choices.camera} goes with a real vehicle (--vehicle mavlink://…); simulators have one"
+        )
+    if real and world.task.needs_confirmation and not any(operator.attended for operator in operators):
+        raise InputError(
+            f"'{world.mission.instruction}' was read by a language model: a real vehicle flies it only after "
+            "somebody has said go; use --operator terminal or console"
+        )
+    if choices.camera or (choices.vehicle is VehicleChoice.MUJOCO and not world.is_map):
+        return
+    if choices.earlier is not None:
+        raise InputError(
+            "--map needs a camera, which looks again at what was free: fly with --vehicle mujoco, or leave it out"
+        )
+    for goal in world.task.subgoals:
+        if goal.action is Action.PHOTOGRAPH:
+            raise InputError(
+                f"'photograph {goal.reference.phrase}' cannot be done: this vehicle has no camera. "
+                "Fly with one that has, or leave the picture out."
+            )
+
+
 def components_for(
     world: World,
     choices: Choices,
@@ -160,8 +190,10 @@ def components_for(
         digests: whether the record is to be replayed.
 
     Raises:
+        InputError: as `check_choices` says.
         MissingPartError: MuJoCo is chosen but not installed.
     """
+    check_choices(world, choices, operators)
     return _Components(world, choices, operators, recorder, talk or Talk(), digests)
 
 
@@ -196,22 +228,6 @@ class _Components(AbstractContextManager[MissionComponents]):
             source = self._seeing(simulator, self._builder())
             made = self._made(simulator, source, surveys=surveys, known=known, watch_map=True)
             return self._seen_through(made, simulator)
-        if choices.camera:
-            if choices.vehicle is not VehicleChoice.MAVLINK:
-                raise InputError(
-                    f"--camera {choices.camera} goes with a real vehicle (--vehicle mavlink://…); simulators have one"
-                )
-            return self._beside_vehicle()
-        if choices.earlier is not None:
-            raise InputError(
-                "--map needs a camera, which looks again at what was free: fly with --vehicle mujoco, or leave it out"
-            )
-        photographs = [g for g in world.task.subgoals if g.action is Action.PHOTOGRAPH]
-        if photographs:
-            raise InputError(
-                f"'photograph {photographs[0].reference.phrase}' cannot be done: this vehicle has no camera. "
-                "Fly with one that has, or leave the picture out."
-            )
         if choices.vehicle is VehicleChoice.MAVLINK:
             return self._beside_vehicle()
         from mintpilot.simulation.kinematic import KinematicSimulator
@@ -232,11 +248,6 @@ class _Components(AbstractContextManager[MissionComponents]):
         from mintpilot.mission.process_worker import ProcessWorker
 
         world, choices = self._world, self._choices
-        if world.task.needs_confirmation and not any(operator.attended for operator in self._operators):
-            raise InputError(
-                f"'{world.mission.instruction}' was read by a language model: a real vehicle flies it only after "
-                "somebody has said go; use --operator terminal or console"
-            )
         sees = bool(choices.camera)
         surveys, known = self._begins() if sees else (False, world.map)
         builder = self._builder(down_to_m=world.mission.volume.lo_m[2]) if sees else None

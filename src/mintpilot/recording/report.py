@@ -23,6 +23,7 @@ from mintpilot.recording.tree_svg import tree_svg
 from mintpilot.recording.words import OUTCOME_WORDS, REPLY_WORDS, stage_words
 from mintpilot.wording.speech import Speech
 
+REPORT_FILE = "report.html"
 MAX_PICTURES = 18
 """Close-ups shown; what bears on a gap comes first."""
 

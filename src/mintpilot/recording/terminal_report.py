@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Iterator
+from pathlib import Path
 
 from rich.console import Console, Group, RenderableType
 from rich.table import Table
@@ -14,7 +15,7 @@ from mintpilot.core.mission import Outcome, Sight
 from mintpilot.core.query import Reply
 from mintpilot.recording.people import look_line, people_lines
 from mintpilot.recording.record import GapRecord, MissionRecord, QuestionRecord
-from mintpilot.recording.report import consequence, reply_words, rule_message, weightiest_first
+from mintpilot.recording.report import REPORT_FILE, consequence, reply_words, rule_message, weightiest_first
 from mintpilot.recording.tree_drawing import tree_text
 from mintpilot.recording.words import OUTCOME_WORDS, printable, stage_words
 from mintpilot.wording.speech import Speech
@@ -170,8 +171,8 @@ def _flown(record: MissionRecord, speech: Speech) -> RenderableType:
         for one in record.left
     )
     lines.extend(_plain(f"! {notice.text}", "yellow") for notice in record.notices)
-    if record.run_dir:
-        report = f"{speech.label('Report')}: {printable(record.run_dir)}/report.html"
+    if record.run_dir and (Path(record.run_dir) / REPORT_FILE).is_file():
+        report = f"{speech.label('Report')}: {printable(record.run_dir)}/{REPORT_FILE}"
         lines.append(Text(report, "bold", overflow="fold"))
     return _section(speech.label("What it flew"), lines)
 
