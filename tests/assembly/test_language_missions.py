@@ -146,7 +146,7 @@ def test_what_an_answer_says_beyond_the_question_saves_questions(tmp_path: Path)
     (question,) = record.questions
     assert question.answer_text == said
     assert "small black cubic box" in question.also[0]
-    assert "The answer also said" in (tmp_path / "run" / "report.html").read_text()
+    assert "also said: " in (tmp_path / "run" / "report.html").read_text()
 
 
 class Screen(io.StringIO):

@@ -14,9 +14,10 @@ from mintpilot.conformance.faults.drawing import drawn
 from mintpilot.conformance.faults.kinds import RULES, Adapter, Fault, FaultKind, rule_of
 from mintpilot.conformance.faults.ledger import Counter
 from mintpilot.conformance.faults.records_kept import kept
+from mintpilot.core.message import NOTHING
 from mintpilot.core.mission import Outcome, Verdict
 
-ENDED = Verdict(outcome=Outcome.SUCCESS, reason="")
+ENDED = Verdict(outcome=Outcome.SUCCESS, reason=NOTHING)
 
 
 def draw_of(kind: FaultKind, *, at_s: float = 4.0, lasts_s: float = float("inf"), size: float = 0.5):

@@ -141,7 +141,7 @@ def test_and_that_is_said():
     pytest.importorskip("mujoco", reason="needs MuJoCo")
     events: list[object] = []
     run_mission(hall(sees=1.0), vehicle="mujoco", progress=events.append)
-    assert [e for e in events if isinstance(e, Noticed) and "left out" in e.text and "s1" in e.text]
+    assert [e for e in events if isinstance(e, Noticed) and "left out" in str(e.text) and "s1" in str(e.text)]
 
 
 @pytest.mark.parametrize(("valid_s", "through"), [(120.0, True), (2.0, False)])

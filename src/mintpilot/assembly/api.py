@@ -101,6 +101,7 @@ def _planned(file: MissionFile, folder: Path, talk: Talk, choices: Choices, *, s
         task=world.task,
         question=question,
         seconds=seconds,
+        speech=talk.spoken,
     )
 
 

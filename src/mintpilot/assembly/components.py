@@ -19,6 +19,7 @@ from mintpilot.assembly.talk import Talk
 from mintpilot.assembly.worlds import World
 from mintpilot.core.errors import InfeasibleError, InputError
 from mintpilot.core.geometry import Floats, GridFrame
+from mintpilot.core.message import Message, message, verbatim
 from mintpilot.core.ports import Camera, Judge, Operator, Perception, Recorder, Vehicle
 from mintpilot.core.semantic_map import SemanticMap
 from mintpilot.core.task import Action
@@ -209,7 +210,7 @@ class _Components(AbstractContextManager[MissionComponents]):
         self._world, self._choices, self._operators, self._recorder = world, choices, operators, recorder
         self._talk, self._digests = talk, digests
         self._perception: Perception | None = None
-        self._left_out = ""
+        self._left_out = Message()
         self._stack = ExitStack()
 
     def __enter__(self) -> MissionComponents:
@@ -306,17 +307,17 @@ class _Components(AbstractContextManager[MissionComponents]):
     def _seen_through(self, made: MissionComponents, camera: Camera | None) -> MissionComponents:
         earlier = self._choices.earlier
         viewed = camera if self._choices.views else None
-        return replace(made, viewed=viewed, begins_with=earlier.words if earlier is not None else "")
+        return replace(made, viewed=viewed, begins_with=earlier.words if earlier is not None else Message())
 
     def __exit__(self, *_: object) -> None:
         self._stack.close()
 
-    def _remarks(self) -> tuple[str, ...]:
+    def _remarks(self) -> tuple[Message, ...]:
         from mintpilot.assembly.perceiving import remarks_of
 
         seen = () if self._perception is None else tuple(remarks_of(self._perception))
-        left_out, self._left_out = self._left_out, ""
-        return (*self._talk.take_remarks(), *seen, *((left_out,) if left_out else ()))
+        left_out, self._left_out = self._left_out, Message()
+        return (*self._talk.take_remarks(), *map(verbatim, seen), *((left_out,) if left_out else ()))
 
     def _made(
         self,
@@ -348,17 +349,19 @@ class _Components(AbstractContextManager[MissionComponents]):
         parts = deliberation_parts(self._world, self._choices, self._talk)
         unsettled = [look.gap for look in self._world.mission.looks if look not in parts.mission.looks]
         if unsettled:
-            self._left_out = f"Nothing here settles a look at {', '.join(unsettled)}: such looks are left out."
+            gaps = ", ".join(unsettled)
+            self._left_out = message("Nothing here settles a look at {gaps}: such looks are left out.", gaps=gaps)
         briefed = self._choices.briefs or self._world.task.needs_confirmation
         return MissionComponents(
             parts=parts,
-            briefing=briefing_of(parts, known, lang=self._talk.lang) if briefed else None,
+            briefing=briefing_of(parts, known, lang=self._talk.lang, names=self._talk.names) if briefed else None,
             vehicle=vehicle,
             map_source=source,
             operators=self._operators,
             recorder=self._recorder,
             improve=self._talk.improve,
             remarks=self._remarks,
+            spoken=self._talk.spoken,
             watch_map=watch_map,
             digests=self._digests,
             strategy_name=strategy_label(self._choices.strategy, self._choices.strategy_arguments),

@@ -117,8 +117,8 @@ def _world_mistakes(file: MissionFile, base: Path) -> Iterator[tuple[Place, str]
     if not world.is_map:
         return
     for problem in find_gaps(world.map, world.task, start_m=world.mission.start_m).problems:
-        named = [i for i, goal in enumerate(file.goals or ()) if f"'{goal.phrase or goal.object}'" in problem]
-        yield (("goals", named[0]) if named else ("instruction",)), problem
+        named = [i for i, goal in enumerate(file.goals or ()) if f"'{goal.phrase or goal.object}'" in str(problem)]
+        yield (("goals", named[0]) if named else ("instruction",)), str(problem)
 
 
 def _tried(place: Place, work: Callable[[], object]) -> list[tuple[Place, str]]:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Protocol
 from mintpilot.core.errors import InputError, MissionError
 from mintpilot.core.gap import CorrelationGroup
 from mintpilot.core.geometry import Vec3
+from mintpilot.core.message import joined
 from mintpilot.core.mission import Mission
 from mintpilot.core.observation import PERSON
 from mintpilot.core.plan import VehicleLimits
@@ -200,7 +201,7 @@ def _on_map(file: MissionFile, map_: SemanticMap, task: Task, start: Vec3, seed:
     map_, truths = valued.map, truths_of(file) | valued.truths
     problems = find_gaps(map_, task, start_m=start).problems if task.needs_confirmation else ()
     if problems:
-        raise InputError(f"'{mission.instruction}' was read by a language model: {' '.join(problems)}")
+        raise InputError(f"'{mission.instruction}' was read by a language model: {joined(problems)}")
     check_keep_away(map_, task, start_m=start)
     return World(
         mission=replace(mission, limits=_with_reserve(_at_pace(mission.limits, task)), volume=map_.frame.box),

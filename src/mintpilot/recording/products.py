@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from contextlib import suppress
+from functools import partial
 from pathlib import Path
 
 from mintpilot.recording.history import History
-from mintpilot.recording.record import MissionRecord
+from mintpilot.recording.record import MissionRecord, TreeRecord
 from mintpilot.recording.report import REPORT_FILE, report_html
 from mintpilot.recording.topdown import save_topdown, view_of
 from mintpilot.recording.tree_drawing import tree_dot, tree_json, tree_text
 from mintpilot.recording.tree_svg import tree_svg
+from mintpilot.wording.speech import Speech
 
 
 def write_products(record: MissionRecord, history: History, folder: Path) -> list[str]:
@@ -22,7 +24,13 @@ def write_products(record: MissionRecord, history: History, folder: Path) -> lis
     steps: list[tuple[str, list[Path], Callable[[], object]]] = []
     tree = record.tree
     if tree is not None:
-        drawings = {"txt": tree_text, "json": tree_json, "svg": tree_svg, "dot": tree_dot}
+        speech = Speech(record.language)
+        drawings: dict[str, Callable[[TreeRecord], str]] = {
+            "txt": partial(tree_text, speech=speech),
+            "json": tree_json,
+            "svg": partial(tree_svg, speech=speech),
+            "dot": partial(tree_dot, speech=speech),
+        }
         for ending, draw in drawings.items():
             file = folder / f"tree.{ending}"
             steps.append((file.name, [file], lambda f=file, d=draw: f.write_text(d(tree), encoding="utf-8")))  # type: ignore[misc]
