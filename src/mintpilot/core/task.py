@@ -84,15 +84,6 @@ class SubGoal:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Avoidance:
-    """A kind of region that the person wants the drone to stay out of, whatever its passability."""
-
-    kind: RegionKind
-    strict: bool = True
-    """False for a wish (``skip the smoke if you can``): given up where the task cannot be done otherwise."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
 class KeepAway:
     """A distance to be kept from things or regions. A wish: a plan that cannot keep it says so."""
 
@@ -131,8 +122,9 @@ class Task:
     subgoals: tuple[SubGoal, ...]
     seeks_people: bool = False
     """True when everybody who is hurt must be found: closed rooms then open presence gaps."""
-    avoid: tuple[Avoidance, ...] = ()
-    """What is to be stayed out of. Regions of these kinds open no gap, so that no plan enters them."""
+    avoid: tuple[RegionKind, ...] = ()
+    """Kinds of region that the person wishes to be stayed out of (``skip the smoke if you can``): they open no gap, so
+    that no plan enters them, unless the task cannot be done otherwise. What is never to be entered is a rule."""
     keep_away: tuple[KeepAway, ...] = ()
     """What a distance is to be kept from."""
     slowly: bool = False
@@ -163,7 +155,12 @@ class Task:
     @property
     def keep_out(self) -> tuple[str, ...]:
         """What the drone stays out of or away from, in plain words: ``smoke``, ``people (2 m)``."""
-        kinds = [f"{a.kind}" if a.strict else f"{a.kind}, if possible" for a in self.avoid]
+        return (*(r.keeps_out_of for r in self.rules if r.keeps_out_of), *self.wishes)
+
+    @property
+    def wishes(self) -> tuple[str, ...]:
+        """What of that is given up where the task cannot be done otherwise."""
+        kinds = (f"{kind}, if possible" for kind in self.avoid)
         return (*kinds, *(f"{_bare(k.reference.phrase)} ({k.distance_m:g} m)" for k in self.keep_away))
 
 
@@ -173,8 +170,8 @@ def step_lines(task: Task) -> Iterator[str]:
         yield f"{step.n} {step.text}"
     if task.slowly:
         yield "the whole flight slowly"
-    if task.keep_out:
-        yield f"keep out of: {', '.join(task.keep_out)}"
+    if task.wishes:
+        yield f"keep out of: {', '.join(task.wishes)}"
     for rule in task.rules:
         yield f"rule: {rule.text}"
 
