@@ -68,7 +68,9 @@ def drawn(number: int) -> tuple[PlanningProblem, int]:
         goals = dict(zip(GOALS, places, strict=True))
         if any(mask[cell] for mask in smoke.values() for cell in cells):
             continue
-        problem = problem_of(free, areas, goals, (rule,), smoke=smoke, start=start, limits=LIMITS)
+        problem: PlanningProblem = problem_of(  # type: ignore[no-untyped-call]
+            free, areas, goals, (rule,), smoke=smoke, start=start, limits=LIMITS
+        )
         try:
             GridPlanner().open(problem)
         except MintPilotError:  # nothing can be reached at all
