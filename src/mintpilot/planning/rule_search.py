@@ -36,18 +36,12 @@ class RuledWays:
         return [(int(i), float(row[i])) for i in np.flatnonzero(np.isfinite(row))]
 
     def path(self, node: int, place: int) -> Ints:
-        """Cells (n, 3) of the way to a node in a set."""
-        count = len(self.sets)
-        rows = [node * count + place]
-        while rows[-1] != self.start:
-            rows.append(int(self.before[rows[-1]]))
-        nodes = np.array(rows[::-1], np.int64) // count
-        keep = np.concatenate([[True], np.diff(nodes) != 0])
-        return self.lattice.cells(nodes[keep])
+        """Nodes (n,) of the way to a node in a set."""
+        return _traced(self.before, self.start, node * len(self.sets) + place, len(self.sets))
 
 
 def ways_from(
-    lattice: Lattice, allowed: Words, node: int, sets: Ints, table: Ints, kinds: Ints, uncertain: Floats
+    lattice: Lattice, allowed: Words, node: int, sets: Ints, table: Ints, kinds: Ints, uncertain: Floats, easier: Words
 ) -> RuledWays:
     """Searches from a node in the first of the sets, whose label counts already.
 
@@ -59,11 +53,14 @@ def ways_from(
         table: (n, labels) which set follows, -1: none.
         kinds: (nodes,) label of each node; -1 for the rim.
         uncertain: (nodes,) number of uncertain regions of each node.
+        easier: (n,) bit sets of the sets that are no harder to go on from than each: a node that was reached in one of
+            those at no greater cost need not be left in it. Of more than 64 sets, none.
     """
     count, size = len(sets), lattice.size
     cost = np.full(size * count, np.inf)
     before = np.full(size * count, -1, np.int64)
-    _spread(allowed, lattice.offset, lattice.moves.length, node * count, count, table, kinds, uncertain, cost, before)
+    length = lattice.moves.length
+    _spread(allowed, lattice.offset, length, node * count, count, table, kinds, uncertain, easier, cost, before)
     return RuledWays(lattice=lattice, start=node * count, sets=sets, cost=cost, before=before)
 
 
@@ -77,6 +74,7 @@ def _spread(
     table: Ints,
     kinds: Ints,
     uncertain: Floats,
+    easier: Words,
     cost: Floats,
     before: Ints,
 ) -> None:
@@ -103,6 +101,15 @@ def _spread(
             continue
         closed[here] = 1
         node, state = here // count, here % count
+        hopeless = False
+        if easier[state]:
+            for other in range(count):
+                if easier[state] >> np.uint64(other) & np.uint64(1) and cost[node * count + other] <= cost[here]:
+                    hopeless = True
+                    break
+        if hopeless:
+            cost[here] = np.inf
+            continue
         word = allowed[node]
         for k in range(offset.size):
             if not word >> np.uint64(k) & np.uint64(1):
@@ -135,3 +142,44 @@ def _spread(
             row[new], following[new] = to, head[slot]
             head[slot] = new
             queued += 1
+
+
+@compiled(error_model="numpy")
+def _traced(before: Ints, start: int, row: int, count: int) -> Ints:
+    """Nodes of the way to a row, each once where it was not left."""
+    size, here = 1, row
+    while here != start:
+        size += before[here] // count != here // count
+        here = before[here]
+    nodes = np.empty(size, np.int64)
+    here = row
+    nodes[size - 1] = here // count
+    while here != start:
+        if before[here] // count != here // count:
+            size -= 1
+            nodes[size - 1] = before[here] // count
+        here = before[here]
+    return nodes
+
+
+@compiled(error_model="numpy")
+def entered(nodes: Ints, masks: Words, offset: Ints, swept: Ints, axes: Ints) -> tuple[np.uint64, Ints]:
+    """The regions, a bit set, that a way over these nodes enters, and its number of moves (4,) along so many axes.
+
+    Args:
+        nodes: (n,) neighbours one after another.
+        masks: (nodes,) bit set of the regions of each node.
+        offset: as `Lattice.offset`.
+        swept: as `Lattice.swept`.
+        axes: (moves,) along how many axes each move leads.
+    """
+    mask, kinds = masks[nodes[0]], np.zeros(4, np.int64)
+    for i in range(nodes.size - 1):
+        for k in range(offset.size):
+            if nodes[i] + offset[k] == nodes[i + 1]:
+                kinds[axes[k]] += 1
+                mask |= masks[nodes[i + 1]]
+                for j in range(swept.shape[1]):
+                    mask |= masks[nodes[i] + swept[k, j]]
+                break
+    return mask, kinds

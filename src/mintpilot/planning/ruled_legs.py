@@ -6,11 +6,11 @@ import numpy as np
 
 from mintpilot.core.geometry import Floats, Ints
 from mintpilot.planning.decision_list import ParetoPath
-from mintpilot.planning.lattice import cost_of_moves, lattice_of, swept_cells
+from mintpilot.planning.lattice import Words, cost_of_moves, lattice_of
 from mintpilot.planning.legs import Cell3
 from mintpilot.planning.overlay import closed_moves
 from mintpilot.planning.rule_labels import RuleGrid
-from mintpilot.planning.rule_search import RuledWays, ways_from
+from mintpilot.planning.rule_search import RuledWays, entered, ways_from
 from mintpilot.planning.terrain import Terrain
 
 
@@ -27,9 +27,10 @@ class RuledLegs:
         self.lattice = lattice_of(terrain.free)
         self._kinds = grid.over(self.lattice)
         self._regions = tuple(self.lattice.nodes_of_flat(cells) for cells in terrain.regions)
-        self._masks: Ints = np.zeros(terrain.frame.size, np.uint64)
-        for bit, cells in enumerate(terrain.regions):
-            self._masks[cells] |= np.uint64(1 << bit)
+        self._masks: Words = np.zeros(self.lattice.size, np.uint64)
+        for bit, nodes in enumerate(self._regions):
+            self._masks[nodes] |= np.uint64(1 << bit)
+        self._axes: Ints = np.abs(self.lattice.moves.step).sum(axis=1).astype(np.int64)
         self._ways: dict[tuple[int, int, Cell3, int, int], RuledWays] = {}
         self.searches = 0
 
@@ -56,15 +57,16 @@ class RuledLegs:
             if any(node in region for region in closed):
                 allowed = np.zeros_like(allowed)
             self.searches += 1
-            self._ways[key] = ways_from(self.lattice, allowed, node, sets, table, self._kinds, doubtful)
+            self._ways[key] = ways_from(
+                self.lattice, allowed, node, sets, table, self._kinds, doubtful, self._grid.easier(sets)
+            )
         return self._ways[key]
 
     def path(self, ways: RuledWays, place: Cell3, state: int) -> ParetoPath[Ints]:
         """The way to a place in one of the sets, with the regions that it enters."""
-        cells = ways.path(self.lattice.node(place), state)
-        kinds = np.bincount(np.abs(np.diff(cells, axis=0)).sum(axis=1), minlength=4)
-        mask = int(np.bitwise_or.reduce(self._masks[self.flats(swept_cells(cells))]))
-        return ParetoPath(cost=cost_of_moves(kinds), mask=mask, path=cells)
+        nodes = ways.path(self.lattice.node(place), state)
+        mask, kinds = entered(nodes, self._masks, self.lattice.offset, self.lattice.swept, self._axes)
+        return ParetoPath(cost=cost_of_moves(kinds), mask=int(mask), path=self.lattice.cells(nodes))
 
     def flats(self, cells: Ints) -> Ints:
         """Flat cells (n,) of cells (n, 3)."""

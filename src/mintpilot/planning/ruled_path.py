@@ -32,7 +32,7 @@ def keeps_rules(way_m: Floats, ruling: Ruling, map: SemanticMap, limits: Vehicle
     planned = grid.flown(start, as_along_m[:2], ruling.held)
     planned = grid.followed(planned, np.ravel_multi_index(tuple(cells.T), map.frame.shape), ruling.held)
     came = grid.flown(start, way_m, ruling.held)
-    return came >= 0 and planned >= 0 and grid.sets[came] <= grid.sets[planned]
+    return came >= 0 and planned >= 0 and grid.covers(planned, came)
 
 
 def ruled_path(
@@ -51,12 +51,11 @@ def ruled_path(
     if begun < 0:
         return None
     sets, table = grid.table(begun, ruling.held)
-    ways = ways_from(
-        lattice, lattice.allowed, lattice.node(start), sets, table, grid.over(lattice), np.zeros(lattice.size)
-    )
+    certain, easier = np.zeros(lattice.size), grid.easier(sets)
+    ways = ways_from(lattice, lattice.allowed, lattice.node(start), sets, table, grid.over(lattice), certain, easier)
     node = lattice.node(goal)
     ends = [(cost, state) for state, cost in ways.at(node) if grid.is_kept(int(sets[state]))]
     if not ends:
         return None
-    cells = ways.path(node, min(ends)[1])
+    cells = lattice.cells(ways.path(node, min(ends)[1]))
     return np.vstack([np.asarray([start_m], float), map.frame.centres_of(cells)])

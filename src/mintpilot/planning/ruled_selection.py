@@ -6,7 +6,7 @@ import heapq
 import itertools
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, cached_property
 
 import numpy as np
 
@@ -118,6 +118,7 @@ class RuledSelector:
             self._made.append(_Made(wanted=wanted, blocked=blocked, mask=mask, found=found))
         return found
 
+    @cached_property
     def _begun(self) -> tuple[int, int]:
         """Set of states and propositions held in the middle of the plan's first cell."""
         held, start = self._ruling.held, self._itinerary.start
@@ -128,7 +129,7 @@ class RuledSelector:
 
     def _keeps(self, found: Selection) -> bool:
         """Whether a plan made without regard to rules keeps them, its way home included."""
-        rules, held = self._begun()
+        rules, held = self._begun
         place = self._itinerary.start
         for number, way in zip(found.route.order, found.route.paths, strict=True):
             rules = self._grid.followed(rules, self._legs.flats(way.path), held)
@@ -143,23 +144,23 @@ class RuledSelector:
 
     def _searched(self, plain: Selection, wanted: WantedStops, blocked: int, uncertain: int) -> Selection | None:
         """Labels in the order of the least that a route through them costs: the ways without rules bound the rest."""
-        rules, held = self._begun()
+        rules, held = self._begun
         if rules < 0:
             return None
         least = self._least(wanted, blocked)
         start = self._itinerary.start
         first = _Label(cost_s=self._plain.start_s, done=0, order=(), place=start, rules=rules, held=held, paths=())
         heap: list[tuple[float, int, _Label]] = [(first.cost_s, 0, first)]
-        count, seen = itertools.count(1), set[tuple[int, Cell3, int, int]]()
+        count, seen = itertools.count(1), dict[tuple[int, Cell3, int], list[int]]()
         best: tuple[tuple[float, ...], _Label, _Ending] | None = None
         while heap:
             bound_s, _, here = heapq.heappop(heap)
-            key = (here.done, here.place, here.rules, here.held)
-            if key in seen:
-                continue
+            before = seen.setdefault((here.done, here.place, here.held), [])
+            if any(self._grid.covers(here.rules, one) for one in before):
+                continue  # it came there before, for no more, and is no worse off
             if best is not None and round(bound_s, DECIMALS_S) > best[0][0]:
                 break
-            if len(seen) >= MAX_LABELS:
+            if sum(map(len, seen.values())) >= MAX_LABELS:
                 self.notes.add(
                     message(
                         "more than {most} combinations of stops and rules; the best plan found is taken",
@@ -167,7 +168,7 @@ class RuledSelector:
                     )
                 )
                 break
-            seen.add(key)
+            before.append(here.rules)
             end = self._ended(here, blocked, uncertain) if here.done else None
             if end is not None:
                 left_s = wanted.left_s(here.done)
