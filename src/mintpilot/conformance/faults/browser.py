@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -42,6 +43,8 @@ THINKS_S: Final = 2.0
 """Longest that the person thinks, seconds."""
 BUSY_MS: Final = 4000
 """Longest that a slow page does nothing, milliseconds."""
+HELD_S: Final = 10.0
+"""After an order, whatever it was, the mission is told to go on, seconds."""
 FLOOD: Final = 400
 """Most messages of a flood."""
 Command: TypeAlias = dict[str, object]
@@ -134,6 +137,7 @@ class Person:
     """Questions, and read-backs, that were answered."""
     _once: set[FaultKind] = field(default_factory=set)
     _failed: str = ""
+    _ordered_s: float = math.inf
 
     def begin(self) -> None:
         """Opens the browser. Raises `DeviceError` where it does not come."""
@@ -200,6 +204,10 @@ class Person:
         if ordering is not None and (self._first(FaultKind.ORDERS) is not None or rng.random() < 0.02):
             orders = [order for order in Order if order is not Order.CONTINUE]
             page.evaluate(RAW, [{"kind": "order", "order": orders[int(rng.integers(len(orders)))].value}])
+            self._ordered_s = self.ledger.now_s
+        if self.ledger.now_s > self._ordered_s + HELD_S:  # to hold is meant for half an hour
+            page.evaluate(RAW, [{"kind": "order", "order": Order.CONTINUE.value}])
+            self._ordered_s = math.inf
         if self._on(FaultKind.SECOND) is not None:
             self._second(browser)
         if self._on(FaultKind.WRONG_TOKEN) is not None:
