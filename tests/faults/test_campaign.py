@@ -14,9 +14,10 @@ from mintpilot.conformance.faults.drawing import KINDS, drawn
 from mintpilot.conformance.faults.kinds import RULES, Adapter, Fault, FaultKind, rule_of
 from mintpilot.conformance.faults.ledger import Counter
 from mintpilot.conformance.faults.records_kept import kept
+from mintpilot.core.message import NOTHING
 from mintpilot.core.mission import Outcome, Verdict
 
-ENDED = Verdict(outcome=Outcome.SUCCESS, reason="")
+ENDED = Verdict(outcome=Outcome.SUCCESS, reason=NOTHING)
 
 
 def draw_of(kind: FaultKind, *, at_s: float = 4.0, lasts_s: float = float("inf"), size: float = 0.5):
@@ -43,6 +44,7 @@ def test_a_part_of_a_campaign_is_the_beginning_of_the_whole() -> None:
     assert set(small) <= set(large)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("kind", "outcomes"),
     [
@@ -61,6 +63,7 @@ def test_what_a_mission_comes_to_with_a_fault(tmp_path: Path, kind: FaultKind, o
     assert record.outcome in outcomes
 
 
+@pytest.mark.long
 def test_a_flood_changes_nothing_but_what_it_says(tmp_path: Path) -> None:
     """All that it says of the open question is that nobody knows: the mission asks on, and ends as without answers."""
     flooded = fly(draw_of(FaultKind.FLOODING, at_s=0.0), tmp_path / "flood", Counter())
@@ -72,6 +75,15 @@ def test_a_flood_changes_nothing_but_what_it_says(tmp_path: Path) -> None:
     assert flooded.events > 2 * calm.events, "there was a flood"
 
 
+@pytest.mark.long
+def test_a_recogniser_that_hears_anything_opens_nothing(tmp_path: Path) -> None:
+    for number in range(3):
+        heard = replace(draw_of(FaultKind.MISHEARD, at_s=0.0, size=1.0), number=number, world_seed=number)
+        record = fly(heard, tmp_path / str(number), Counter())
+        assert record.breaches == ()
+
+
+@pytest.mark.long
 def test_a_campaign_goes_on_where_it_stopped(tmp_path: Path) -> None:
     keys = [(Adapter.KINEMATIC, number) for number in (1, 4, 8)]
     store, heard = FaultStore(tmp_path), []

@@ -17,6 +17,7 @@ _DOES: tuple[_Rule, ...] = (
     ("(photograph | PICTURE of) <things> {HOW}", steps.photograph),
     ("PICTURE [there]", steps.photograph),
     ("(LOOKS | TELL SEEN) [<room> | AROUND <thing>] [there]", steps.report),
+    ("describe <thing>", steps.report),
     ("(count [how many] | HOW_MANY) <thing> [ARE] {PLACE}", steps.count),
     ("HOLD [there | here] OVER <thing> [for <duration>]", steps.wait),
     ("hover [there | here] [<height>] [[for] <duration>]", steps.wait),
@@ -40,7 +41,7 @@ _DOES: tuple[_Rule, ...] = (
     ("[SLOWLY] VISIT <things> {HOW}", steps.visit),
     ("BRING <thing> [<source>] <goal>", steps.bring),
     ("BRING <who> <thing> [<source>]", steps.bring),
-    ("DROP <bare> [down | off] (there | AT <place>)", steps.drop),
+    ("DROP <bare> [down | off] (there | AT <place> | UPON <place>)", steps.drop),
     ("PICK <thing> [up] [<source>]", steps.pick),
     ("<named> (needs | need) <thing> [<source>]", steps.needed),
     ("HOME", steps.home_too),
@@ -55,7 +56,7 @@ _KEEPS_OUT: tuple[_Rule, ...] = (
         "[WISH [,]] (AVOID | without ENTERING | NEVER ENTER | STAY [<distance>] OUT_OF) <outs> [[,] WISH]",
         steps.keep_out,
     ),
-    ("[WISH [,]] STAY <distance> from <outs> [[,] WISH]", steps.keep_out),
+    ("[WISH [,]] STAY (<distance> | a distance | your distance) from <outs> [[,] WISH]", steps.keep_out),
     ("<named> OFF_LIMITS", steps.keep_out),
 )
 
