@@ -30,6 +30,7 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return out
 
 
+@pytest.mark.long
 def test_the_last_map_of_a_run_is_taken_without_its_permissions(run: Path) -> None:
     first = earlier_map(run, now_s=0.0)
     assert first.age_s == 0.0
@@ -76,6 +77,7 @@ def test_nothing_that_somebody_said_is_taken_over_and_what_was_drawn_stays_close
     )
 
 
+@pytest.mark.long
 def test_one_look_outweighs_an_earlier_map() -> None:
     """Yesterday all was free; now a wall stands 2 m in front of the camera."""
     builder = MapBuilder(GRID, limits=VehicleLimits(), volume=VOLUME)

@@ -57,6 +57,7 @@ class Listener(FunctionOperator):
         self.told.append(text)
 
 
+@pytest.mark.long
 def test_better_words_are_asked_and_told_apart_from_the_first_ones(server: LlmServer, tmp_path: Path) -> None:
     events: list[Event] = []
     record = run_mission(MEDICINE, vehicle="kinematic", llm="endpoint", out=tmp_path / "run", progress=events.append)

@@ -43,6 +43,7 @@ def test_a_part_of_a_campaign_is_the_beginning_of_the_whole() -> None:
     assert set(small) <= set(large)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("kind", "outcomes"),
     [
@@ -62,6 +63,7 @@ def test_what_a_mission_comes_to_with_a_fault(tmp_path: Path, kind: FaultKind, o
     assert record.outcome in outcomes
 
 
+@pytest.mark.long
 def test_a_campaign_goes_on_where_it_stopped(tmp_path: Path) -> None:
     keys = [(Adapter.KINEMATIC, number) for number in (1, 4, 8)]
     store, heard = FaultStore(tmp_path), []

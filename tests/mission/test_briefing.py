@@ -122,6 +122,7 @@ def test_what_is_lost_before_take_off_ends_it_and_better_words_change_nothing() 
     assert after.ended
 
 
+@pytest.mark.long
 def test_a_briefed_mission_is_thought_through_again(tmp_path) -> None:  # type: ignore[no-untyped-def]
     run = RunFolder(tmp_path / "run")
     with (

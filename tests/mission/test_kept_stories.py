@@ -255,6 +255,7 @@ def story_of(phase: str, event: str) -> str:
     return story.told(since)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("event", EVENTS)
 def test_the_mission_does_what_it_did(event: str) -> None:
     same_as_kept(KEPT, {f"{phase} + {event}": story_of(phase, event) for phase in PHASES})

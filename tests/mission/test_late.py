@@ -51,6 +51,7 @@ def kinds(events: list) -> list[str]:
     return [event.kind for event in events if type(event).__name__ == "Noticed"]
 
 
+@pytest.mark.long
 @settings(max_examples=25, deadline=None)
 @given(
     delay_s=st.floats(0.0, 20.0),

@@ -35,6 +35,7 @@ def flown(folder: Path, valid_s: float) -> list[Event]:
     return events
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("valid_s", "crosses"), [(4.0, False), (5.0, False), (7.0, True), (30.0, True), (600.0, True)])
 def test_a_yes_must_last_until_the_drone_is_through(tmp_path: Path, valid_s: float, crosses: bool) -> None:
     events = flown(tmp_path, valid_s)

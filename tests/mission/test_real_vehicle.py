@@ -112,6 +112,7 @@ def test_where_the_vehicle_cannot_a_person_lends_a_hand():
     assert sum("say 'continue'" in text and "by hand" in text for text in helper.told) == 2
 
 
+@pytest.mark.long
 def test_where_nobody_lends_a_hand_it_goes_home():
     verdict, vehicle = flown(Helper(willing=False), by_hand="Attach it by hand")
     assert verdict.outcome.value == "aborted"

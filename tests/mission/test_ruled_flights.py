@@ -89,6 +89,7 @@ class Pleased:
         return Verdict(outcome=Outcome.SUCCESS, reason="Every goal was reached.")
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("rule", "kept"),
     [
@@ -148,6 +149,7 @@ def is_kept(world, flown):
     return all(monitor.is_kept(rule.formula, of, len(points)) for rule in world.task.rules)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("rule", "does"),
     [

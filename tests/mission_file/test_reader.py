@@ -192,6 +192,7 @@ BAD = [
 ]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("place", "value", "where", "words"), BAD, ids=[f"{b[0]}={b[1]}"[:60] for b in BAD])
 def test_each_mistake_is_named_with_its_place(tmp_path, place, value, where, words):
     path = write(tmp_path, changed(MISSION, place, value))
@@ -295,6 +296,7 @@ YAML = [
 ]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("data", "line", "words"), YAML, ids=[y[2] for y in YAML])
 def test_unreadable_yaml(tmp_path, data, line, words):
     problems = find_problems(write(tmp_path, data))
@@ -340,6 +342,7 @@ def _places(value: object, path: str = "") -> list[str]:
     return [place for key, inner in items for place in (f"{path}{key}", *_places(inner, f"{path}{key}/"))]
 
 
+@pytest.mark.long
 @given(mission=st.sampled_from([MISSION, SCENE]), data=st.data(), value=values)
 @settings(max_examples=80, deadline=None)
 def test_any_value_in_any_place_is_accepted_or_named_there(tmp_path_factory, mission, data, value):

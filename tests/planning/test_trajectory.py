@@ -68,6 +68,7 @@ def assert_within_limits(t: Trajectory, speed_mps: float) -> None:
         assert not ends.any()
 
 
+@pytest.mark.long
 @settings(deadline=None, max_examples=40)
 @given(seed=st.integers(0, 10**6), speed=st.sampled_from([None, 0.5, 3.0]))
 @example(seed=91207, speed=None)

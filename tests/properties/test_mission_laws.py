@@ -11,6 +11,7 @@ from dataclasses import replace
 from functools import cache
 
 import numpy as np
+import pytest
 from hypothesis import HealthCheck, Phase, note, settings
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, precondition, rule
@@ -518,3 +519,6 @@ class TestMissionLaws(Mission.TestCase):
         super().runTest()
         assert OUTCOMES[Outcome.SUCCESS] >= 1, OUTCOMES
         assert OUTCOMES.total() > OUTCOMES[Outcome.SUCCESS], OUTCOMES
+
+
+TestMissionLaws.pytestmark = [pytest.mark.long]  # type: ignore[attr-defined]

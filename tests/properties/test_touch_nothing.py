@@ -39,6 +39,7 @@ def random_world(seed: int, cell_m: float, *, tall: bool = False) -> tuple[Seman
     return SemanticMap(frame=frame, cells=cells, regions=(region,)), barred
 
 
+@pytest.mark.long
 @settings(deadline=None, max_examples=60)
 @given(seed=seeds, cell_m=cells_m, body_m=bodies_m, tall=st.booleans())
 def test_the_check_agrees_with_dense_sampling(seed: int, cell_m: float, body_m: float, tall: bool) -> None:
@@ -56,6 +57,7 @@ def test_the_check_agrees_with_dense_sampling(seed: int, cell_m: float, body_m: 
         assert refused or gaps.min() >= body_m - 1e-6
 
 
+@pytest.mark.long
 @settings(deadline=None, max_examples=50)
 @given(seed=seeds, cell_m=cells_m, body_m=bodies_m, tall=st.booleans())
 def test_every_path_of_the_search_and_its_trajectory_keep_the_clearance(
@@ -105,6 +107,7 @@ def test_position_uncertainty_adds_three_sigma() -> None:
     assert "0.52 m" in str(check_path(beside, map, VehicleLimits(radius_m=0.3, margin_m=0.1, position_sigma_m=0.04)))
 
 
+@pytest.mark.long
 @settings(deadline=None, max_examples=5)
 @given(seed=st.integers(0, 10**6))
 def test_whole_missions_stay_away_from_all_that_is_not_known_free(seed: int) -> None:

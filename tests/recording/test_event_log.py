@@ -169,6 +169,7 @@ while True:
 """
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seed", range(3))
 def test_a_killed_writer_leaves_every_event_that_it_had_written(tmp_path, seed):
     code = CHILD.format(here=str(Path(__file__).parent), path=str(tmp_path / "log"))
@@ -188,6 +189,7 @@ def test_a_killed_writer_leaves_every_event_that_it_had_written(tmp_path, seed):
     assert (tmp_path / "log").read_bytes().count(b"\n") - 1 == sum(1 for _ in log)
 
 
+@pytest.mark.long
 @TORTURE
 @given(st.data())
 def test_a_torn_tail_is_readable_up_to_the_cut_and_said(tmp_path, told, data):
@@ -210,6 +212,7 @@ def damaged(lines: list[bytes], kind: str, at: int) -> list[bytes]:
     return [*lines[:at], lines[at + 1], lines[at], *lines[at + 2 :]]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("kind", ["edited", "removed", "doubled", "swapped"])
 def test_changed_lines_are_found_and_named(tmp_path, told, kind):
     lines = told.splitlines(keepends=True)
@@ -307,6 +310,7 @@ def test_any_bytes_are_refused(tmp_path, content):
         list(read_event_log(tmp_path / "log"))
 
 
+@pytest.mark.long
 @TORTURE
 @given(st.data())
 def test_changed_bytes_never_raise_anything_else_nor_give_other_events(tmp_path, told, data):
@@ -321,6 +325,7 @@ def test_changed_bytes_never_raise_anything_else_nor_give_other_events(tmp_path,
             assert differences(seen(event), logged.event) == []
 
 
+@pytest.mark.long
 @TORTURE
 @given(st.data())
 def test_forged_lines_never_raise_anything_else(tmp_path, told, data):

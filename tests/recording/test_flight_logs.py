@@ -42,6 +42,7 @@ def read(file: Path) -> list:
         return list(make_reader(stream).iter_messages())
 
 
+@pytest.mark.long
 def test_the_independent_reader_reads_what_was_flown(run: Path) -> None:
     messages = read(run / MCAP_FILE)
     assert {channel.topic for _, channel, _ in messages} >= TOPICS
@@ -71,6 +72,7 @@ def decoded(schema, data: bytes):  # type: ignore[no-untyped-def]
     return GetMessageClass(pool.FindMessageTypeByName(schema.name)).FromString(data)
 
 
+@pytest.mark.long
 def test_poses_are_those_of_the_lossless_log(run: Path) -> None:
     messages = [(s, m) for s, c, m in read(run / MCAP_FILE) if c.topic == "/tf"]
     rows = [line.split(",") for line in track_csv(run).splitlines()[1:]]
@@ -141,6 +143,7 @@ def test_the_commands(run: Path, tmp_path: Path, capsys: pytest.CaptureFixture[s
     assert one["outcome"] == json.loads((run / "record.json").read_text())["outcome"]
 
 
+@pytest.mark.long
 def test_a_flight_that_is_killed_keeps_what_was_written(tmp_path: Path) -> None:
     code = "\n".join(
         (
@@ -167,6 +170,7 @@ def test_a_flight_that_is_killed_keeps_what_was_written(tmp_path: Path) -> None:
     assert [one.outcome for one in listed(tmp_path)] == ["broken-off"]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("failing", [1, 2, 5, 9, 14])
 @pytest.mark.parametrize("share", [0.0, 0.5, 0.99])
 def test_a_write_that_fails_half_way_leaves_a_readable_file_and_is_counted(

@@ -48,6 +48,7 @@ def child(path: Path, *, before: str = "", after: str = "", end: str = "") -> su
     return subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE)
 
 
+@pytest.mark.long
 def test_a_finished_mission_leaves_everything(tmp_path, make_events):
     with RunFolder(tmp_path / "run", clock=lambda: 1000.0) as folder:
         for event in make_events():
@@ -77,6 +78,7 @@ FOLLOWS_FROM_STEPS = (MapUpdated, Deliberated, PlanChosen, LegFlown)
 """The steps hold the same: it is not written a second time."""
 
 
+@pytest.mark.long
 def test_events_are_on_disk_as_they_happen(tmp_path, make_events):
     folder = RunFolder(tmp_path)
     count = 0
@@ -92,6 +94,7 @@ def test_events_are_on_disk_as_they_happen(tmp_path, make_events):
     folder.close()
 
 
+@pytest.mark.long
 def test_a_killed_program_loses_no_event(tmp_path, make_events):
     process = child(tmp_path / "run", end="print('told', flush=True)\nsignal.pause()")
     assert process.stdout is not None
@@ -107,6 +110,7 @@ def test_a_killed_program_loses_no_event(tmp_path, make_events):
     assert list((tmp_path / "run" / "frames").glob("*.jpg"))
 
 
+@pytest.mark.long
 def test_a_record_is_there_while_the_mission_runs(tmp_path, make_events):
     folder = RunFolder(tmp_path)
     for event in make_events()[:-1]:
@@ -118,6 +122,7 @@ def test_a_record_is_there_while_the_mission_runs(tmp_path, make_events):
     folder.close()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("error", "reason"),
     [(KeyboardInterrupt(), "Ctrl-C"), (RuntimeError("motor 3 stands still"), "motor 3 stands still")],
@@ -138,6 +143,7 @@ def test_a_folder_closed_before_anything_happened_is_readable(tmp_path):
     assert RunFolder(tmp_path).close() == read_record(tmp_path)
 
 
+@pytest.mark.long
 def test_a_full_disk_is_noted_and_the_mission_goes_on(tmp_path):
     """A real limit of the operating system on the size of files: writing beyond it fails half-way through a line."""
     limit = "signal.signal(signal.SIGXFSZ, signal.SIG_IGN)\nresource.setrlimit(resource.RLIMIT_FSIZE, (6000, {hard}))"
@@ -195,6 +201,7 @@ def test_the_given_configuration_is_kept(tmp_path):
     assert json.loads((tmp_path / "config.json").read_text()) == {"mintpilot": 1, "seed": 3}
 
 
+@pytest.mark.long
 def test_pictures_are_bounded_and_those_that_prove_something_stay(tmp_path, make_events):
     told = make_events()
     frame = next(e for e in told if type(e).__name__ == "FrameSeen")

@@ -28,6 +28,7 @@ def test_every_result_of_a_look_too(result):
     assert len({look_line(look, lang) for lang in LANGUAGES}) == len(LANGUAGES)
 
 
+@pytest.mark.long
 def test_things_are_called_as_the_file_says_and_the_record_replays_exactly(tmp_path):
     path = written(tmp_path, "Go to the lamp.", truth={"haze": "passable"})
     text = path.read_text()

@@ -67,6 +67,7 @@ def test_optimal_with_wrong_answers_flies_cautiously_instead_of_failing() -> Non
     assert "use 'information-gain'" in str(fly.notices[0])
 
 
+@pytest.mark.long
 @settings(max_examples=15, deadline=None)
 @given(st.integers(0, 999), st.sampled_from([2, 4, 8]), st.sampled_from([0.0, 0.1]))
 def test_no_answer_couples_more_than_max_joint_values(seed: int, most: int, error: float) -> None:

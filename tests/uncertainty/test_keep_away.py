@@ -40,6 +40,7 @@ def least_gap_m(cell_centre: np.ndarray, half_m: float, person: MapObject) -> fl
     return float(np.linalg.norm(points - nearest, axis=1).min())
 
 
+@pytest.mark.long
 @given(
     st.tuples(st.floats(5, 18), st.floats(2, 13), st.floats(0.5, 3)),
     st.floats(0.3, 2.5),
