@@ -14,7 +14,7 @@ help: ## list the targets
 demo: setup-run ## fly a mission of the paper and show it (MISSION=fire-warehouse or medicine, ARGS="--headless --seed 3")
 	@$(BIN)/mintpilot demo $(MISSION) $(ARGS)
 
-test: setup ## run the tests (ARGS="-m slow" for the long ones)
+test: setup ## run the quick tests (ARGS="-m long": those that take seconds; ARGS="-m slow": those that take minutes)
 	@$(BIN)/python -m pytest $(ARGS)
 
 setup: ## make .venv and install everything, the developer's tools included; quick when nothing changed

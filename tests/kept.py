@@ -14,6 +14,8 @@ from pathlib import Path
 
 import numpy as np
 
+from mintpilot.core.message import Message
+
 LEFT_OUT = {"setup", "cells", "frame", "mint", "objects"}
 """Fields that hold much and say little."""
 
@@ -32,7 +34,7 @@ def plain(value: object, name: str = "", *, digits: int = 1) -> Iterator[str]:
     """A value in lines: numbers with so many digits behind the point, arrays by shape and ends."""
     if isinstance(value, Enum):
         yield f"{name}={value.value}"
-    elif isinstance(value, bool | int | None | str):
+    elif isinstance(value, bool | int | None | str | Message):
         yield f"{name}={value}"
     elif isinstance(value, float | np.generic):
         yield f"{name}={float(value):.{digits}f}"

@@ -30,6 +30,7 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return out
 
 
+@pytest.mark.long
 def test_the_last_map_of_a_run_is_taken_without_its_permissions(run: Path) -> None:
     first = earlier_map(run, now_s=0.0)
     assert first.age_s == 0.0
@@ -76,6 +77,7 @@ def test_nothing_that_somebody_said_is_taken_over_and_what_was_drawn_stays_close
     )
 
 
+@pytest.mark.long
 def test_one_look_outweighs_an_earlier_map() -> None:
     """Yesterday all was free; now a wall stands 2 m in front of the camera."""
     builder = MapBuilder(GRID, limits=VehicleLimits(), volume=VOLUME)
@@ -105,7 +107,8 @@ def test_it_must_fit_the_place_and_a_camera_must_look_again(run: Path, tmp_path:
     with pytest.raises(MapError, match="another lattice"):
         builder.begin_with(earlier_map(run).map)
     with pytest.raises(InputError, match="needs a camera"):
-        run_mission(hall(), vehicle="kinematic", earlier=run)
+        run_mission(hall(), vehicle="kinematic", earlier=run, out=tmp_path / "refused")
+    assert not (tmp_path / "refused").exists(), "what is refused leaves no run behind"
     with pytest.raises(RecordError):
         earlier_map(tmp_path)
 

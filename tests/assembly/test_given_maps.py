@@ -63,8 +63,8 @@ def test_taking_another_box_than_the_declared_one_fails(tmp_path):
     judge.acted(Stop(id="pick:1", action=Action.PICK, sites=(Site(position_m=(3.5, 4.5, 1.0)),)), (3.5, 4.0, 1.0))
     verdict = judge.final()
     assert verdict.outcome is Outcome.WRONG_TARGET
-    assert "'near'" in verdict.reason
-    assert "'far' was meant" in verdict.reason
+    assert "'near'" in str(verdict.reason)
+    assert "'far' was meant" in str(verdict.reason)
 
 
 def test_a_bare_place_is_reached_even_where_a_thing_stands_on_it(tmp_path):

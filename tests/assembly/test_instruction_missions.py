@@ -11,6 +11,7 @@ import yaml
 from mintpilot.assembly.api import plan_mission, run_mission
 from mintpilot.assembly.understanding import understand_instructions
 from mintpilot.assembly.validation import check_mission
+from mintpilot.core.errors import InputError
 from mintpilot.core.events import Event, LegFlown
 from mintpilot.core.mission import Outcome
 from mintpilot.models.doubles import FunctionModel
@@ -87,6 +88,19 @@ def test_a_room_or_thing_that_is_not_there_is_found_by_check(tmp_path: Path) -> 
     assert "Seen was the closed garage, the closed pantry" in problem.message
     (problem,) = check_mission(written(tmp_path, "Go to the lamp.", keep_away=[{"from": "not them"}]))
     assert problem.path == "keep_away[0].from"
+
+
+def test_a_distance_from_what_is_not_there_is_found_by_check_and_refused(tmp_path: Path) -> None:
+    nobody = written(tmp_path, "Go to the lamp.", keep_away=[{"from": "people"}, {"from": "smoke"}])
+    assert not check_mission(nobody)  # they come and go
+    barrels = written(tmp_path, "Go to the lamp.", keep_away=[{"from": "people"}, {"from": "the barrels"}])
+    (problem,) = check_mission(barrels)
+    assert problem.path == "keep_away[1].from"
+    assert "matches 'the barrels'" in problem.message
+    with pytest.raises(InputError, match="the barrels"):
+        plan_mission(barrels)
+    (problem,) = check_mission(written(tmp_path, "Go to the lamp. Stay 2 m away from the barrels."))
+    assert problem.path == "instruction"
 
 
 def test_what_a_model_reads_must_be_on_the_map(tmp_path: Path) -> None:

@@ -57,6 +57,7 @@ class Listener(FunctionOperator):
         self.told.append(text)
 
 
+@pytest.mark.long
 def test_better_words_are_asked_and_told_apart_from_the_first_ones(server: LlmServer, tmp_path: Path) -> None:
     events: list[Event] = []
     record = run_mission(MEDICINE, vehicle="kinematic", llm="endpoint", out=tmp_path / "run", progress=events.append)
@@ -145,7 +146,7 @@ def test_what_an_answer_says_beyond_the_question_saves_questions(tmp_path: Path)
     (question,) = record.questions
     assert question.answer_text == said
     assert "small black cubic box" in question.also[0]
-    assert "The answer also said" in (tmp_path / "run" / "report.html").read_text()
+    assert "also said: " in (tmp_path / "run" / "report.html").read_text()
 
 
 class Screen(io.StringIO):

@@ -25,6 +25,7 @@ def flown(tmp_path: Path, instruction: str, **truth: str) -> MissionRecord:
     return run_mission(written(tmp_path, instruction, truth=truth), vehicle="kinematic", out=tmp_path / "run")
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("instruction", "truth", "result", "words"),
     [

@@ -167,6 +167,7 @@ def _let_go(monkeypatch: pytest.MonkeyPatch):
     RELEASE.set()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("demo", ["fire-warehouse", "medicine"])
 @pytest.mark.parametrize("name", MODELS)
 def test_no_model_makes_a_mission_of_the_paper_less_safe(name: str, demo: str) -> None:
@@ -197,6 +198,7 @@ HOSTILE = st.one_of(
 )
 
 
+@pytest.mark.long
 @settings(deadline=None, max_examples=25)
 @example(said=["lies as JSON"], toxic=False, error=0.0, seed=0)
 @given(st.lists(HOSTILE, min_size=1, max_size=4), st.booleans(), st.sampled_from([0.0, 0.05]), st.integers(0, 99))

@@ -20,6 +20,7 @@ def flown(tmp_path_factory):
     return run_mission(demo_mission("medicine"), vehicle="mujoco", seed=0, out=out), out
 
 
+@pytest.mark.long
 def test_the_right_box_is_found_by_asking_and_brought(flown):
     record, _ = flown
     assert record.outcome is Outcome.SUCCESS, record.reason
@@ -31,6 +32,7 @@ def test_the_right_box_is_found_by_asking_and_brought(flown):
     assert asked[0].entropy_bits > 1
 
 
+@pytest.mark.long
 def test_the_rotors_keep_to_the_planned_way(flown):
     flight = flown[0].flight
     assert 0 < flight.rms_error_m < 0.15

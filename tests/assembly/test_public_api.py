@@ -21,6 +21,7 @@ def test_an_unknown_public_name_says_what_there_is() -> None:
         mintpilot.no_such_thing  # noqa: B018
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("port", "name"), [(p, n) for p, table in registry.BUILT_IN.items() for n in table])
 def test_every_registered_part_can_be_made(port: str, name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("MINTPILOT_LLM_URL", "http://127.0.0.1:9/v1")

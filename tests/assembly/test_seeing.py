@@ -32,6 +32,7 @@ def report_on(where: Path | str, **words):  # type: ignore[no-untyped-def]
     return see(open_source(str(where), SourceOptions(**options)), name="test", **words)
 
 
+@pytest.mark.long
 def test_a_recording_becomes_things_a_map_and_a_world_for_missions(tmp_path: Path, capsys) -> None:  # type: ignore[no-untyped-def]
     save_folder(tmp_path / "walk", views(), poses())
     assert main(["see", str(tmp_path / "walk"), "--out", str(tmp_path / "seen"), "--json"]) == 0
@@ -55,6 +56,7 @@ def test_a_recording_becomes_things_a_map_and_a_world_for_missions(tmp_path: Pat
     assert set(planned.gaps[0].values) == {o.id for o in map_.objects if o.label == "box"} | set(NOWHERE)
 
 
+@pytest.mark.long
 def test_one_thing_that_may_be_meant_is_asked_about(tmp_path: Path) -> None:
     save_folder(tmp_path / "walk", views(blocks=BLOCKS[:1]), poses())
     report_on(tmp_path / "walk", out=tmp_path / "seen")
@@ -70,6 +72,7 @@ def test_one_thing_that_may_be_meant_is_asked_about(tmp_path: Path) -> None:
     assert box in planned.query.id
 
 
+@pytest.mark.long
 def test_a_folder_that_is_none_and_one_that_is_broken_are_named(tmp_path: Path) -> None:
     mission = tmp_path / "mission.yaml"
     mission.write_text("mintpilot: 1\nname: seen\ninstruction: pick up the box\nworld: {seen: nowhere}\n")
@@ -142,6 +145,7 @@ def found(report, places) -> int:  # type: ignore[no-untyped-def]
     return sum(any(math.dist(o.position_m, p) < 0.15 for o in report.objects) for p in places)
 
 
+@pytest.mark.long
 def test_from_a_bag_to_the_question_with_a_model_that_sees(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("rosbags", reason="needs rosbags")
     eyes = VisionServer(naming(lambda *_: "medicine box"))

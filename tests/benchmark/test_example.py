@@ -28,6 +28,7 @@ def install(folder: Path) -> None:
     (info / "entry_points.txt").write_text("\n".join(lines) + "\n")
 
 
+@pytest.mark.long
 def test_the_example_is_compared_with_the_others(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     install(tmp_path / "site")
     paths = [str(tmp_path / "site"), str(EXAMPLE / "src")]

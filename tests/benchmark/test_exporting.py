@@ -23,6 +23,7 @@ def records() -> list[TrialRecord | WorldRecord]:
     return here(CONFIG)
 
 
+@pytest.mark.long
 def test_csv_holds_the_figures_of_the_summary(records: list[TrialRecord | WorldRecord]) -> None:
     trials = [r for r in records if isinstance(r, TrialRecord)]
     summary = summarise(CONFIG, trials, [r for r in records if isinstance(r, WorldRecord)])

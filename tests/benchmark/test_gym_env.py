@@ -81,6 +81,7 @@ def test_same_seed_same_worlds() -> None:
         ElicitationEnv(parameters={"endurance_least": 0.1, "endurance_most": 0.2}).reset(options={"world": 0})
 
 
+@pytest.mark.long
 def test_it_can_be_made_in_a_fresh_process() -> None:
     code = "import gymnasium; print(gymnasium.make('mintpilot.gym:mintpilot/Elicitation-v0').action_space.n)"
     made = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=120, check=False)

@@ -43,6 +43,7 @@ def test_things_on_a_table_are_counted(tmp_path: Path) -> None:
     assert counts.mean_iou > 0.7
 
 
+@pytest.mark.long
 def test_the_command_counts_a_folder_and_makes_confidences_true_by_its_names(tmp_path: Path, capsys) -> None:  # type: ignore[no-untyped-def]
     for number in range(10):
         save(tmp_path, f"view{number}", number)

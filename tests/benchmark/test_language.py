@@ -72,6 +72,7 @@ def test_wordings_are_counted_as_the_check_lets_them_through() -> None:
     assert turned.speed.calls == turned.n
 
 
+@pytest.mark.long
 def test_what_is_missing_is_told_and_the_rest_is_measured(listed: Path) -> None:
     told: list[str] = []
     result = measure_language(LanguageOptions(models={"gone": _missing}, instructions=listed), told.append)
@@ -105,6 +106,7 @@ def test_the_bound_on_a_share_is_the_exact_one() -> None:
     assert upper_bound(4, 4) == 1.0
 
 
+@pytest.mark.long
 def test_the_command_prints_one_object_and_keeps_it(listed: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out = listed.parent / "kept"
     code = bench_language(["template"], instructions=listed, sample=5, out=out, as_json=True)

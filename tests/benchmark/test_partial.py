@@ -10,6 +10,7 @@ from mintpilot.core.mission import Outcome
 from .small import experiment, here
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seed", [1, 8, 10, 11])
 def test_asking_never_reaches_fewer_people_than_never_asking(seed: int) -> None:
     made = experiment("passive-conservative", "mint", trials=1, seed=seed)

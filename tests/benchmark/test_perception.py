@@ -30,6 +30,7 @@ def test_the_calibration_error_is_the_distance_of_what_is_said_from_what_is_righ
     assert calibration_error([]) == 0.0
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", STYLES)
 def test_rooms_are_drawn_again_alike_and_nothing_in_them_overlaps(name: str) -> None:
     rooms = [furnished_room(STYLES[name], 4) for _ in range(2)]
@@ -61,6 +62,7 @@ def test_no_rule_was_chosen_on_a_held_back_style() -> None:
     assert not TUNED.keys() & HELD_BACK.keys()
 
 
+@pytest.mark.long
 @pytest.mark.sim
 def test_who_sees_nothing_finds_nothing_and_makes_no_mistake() -> None:
     tally = measure_perception([STYLES["office"]], 1, 0, Blind())

@@ -56,6 +56,7 @@ def folder() -> tuple[Experiment, list[TrialRecord], list[WorldRecord], str]:
     return made, trials, worlds, "runs/<here>"
 
 
+@pytest.mark.long
 def test_page_stands_alone_and_holds_every_trial(tmp_path: Path) -> None:
     made = folder()
     page = tmp_path / "deep" / "page.html"
@@ -74,6 +75,7 @@ def test_page_stands_alone_and_holds_every_trial(tmp_path: Path) -> None:
     assert len(data["worlds"]) == 2 * len(made[2])
 
 
+@pytest.mark.long
 def test_page_is_the_same_every_time(tmp_path: Path) -> None:
     made = folder()
     for name in ("a", "b"):

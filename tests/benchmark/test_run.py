@@ -44,6 +44,7 @@ def plain(record: TrialRecord) -> dict[str, object]:
     return data
 
 
+@pytest.mark.long
 def test_every_method_flies_in_every_world_once(folder: Path) -> None:
     trials, worlds = read_records(folder)
     assert sorted((t.seed, t.method) for t in trials) == sorted(
@@ -58,12 +59,14 @@ def test_every_method_flies_in_every_world_once(folder: Path) -> None:
     assert all(t.questions == 2 for t in trials if t.method == "exhaustive")
 
 
+@pytest.mark.long
 def test_same_seed_same_records_whoever_else_flies(folder: Path) -> None:
     alone = [r for r in here(experiment("mint", trials=2)) if isinstance(r, TrialRecord)]
     before = [plain(t) for t in read_records(folder)[0] if t.method == "mint" and t.seed < 4]
     assert [plain(t) for t in alone] == before
 
 
+@pytest.mark.long
 def test_finished_trials_are_never_flown_again_and_lost_ones_are(folder: Path) -> None:
     config = read_config(folder)
     flown = []
@@ -82,6 +85,7 @@ def test_finished_trials_are_never_flown_again_and_lost_ones_are(folder: Path) -
     assert len(read_records(folder)[0]) == 9
 
 
+@pytest.mark.long
 def test_one_method_alone_is_flown_and_the_rest_stays_for_later(tmp_path: Path) -> None:
     config = experiment("passive-risky", "passive-conservative", trials=1)
     alone = RunOptions(folder=tmp_path / "r", jobs=1, only=frozenset({"passive-risky"}))
@@ -125,6 +129,7 @@ def test_summary_counts_what_the_records_hold(folder: Path) -> None:
     assert summary.least_possible_queries == pytest.approx(sum(w.least_questions or 0.0 for w in worlds) / len(worlds))
 
 
+@pytest.mark.long
 @pytest.mark.usefixtures("bad_plugins")
 def test_plugins_that_raise_hang_or_kill_their_process_cost_their_own_trials_only(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
@@ -145,6 +150,7 @@ def test_plugins_that_raise_hang_or_kill_their_process_cost_their_own_trials_onl
     assert {name for name, trial in found.items() if trial.success} == {"mint", "exhaustive"}
 
 
+@pytest.mark.long
 def test_answers_that_are_wrong_are_wrong_in_the_same_trials_every_time() -> None:
     wrong = experiment("exhaustive", trials=3, condition=Condition(answer_error=0.4, believed_error=0.0))
     runs = [[plain(t) for t in here(wrong) if isinstance(t, TrialRecord)] for _ in range(2)]
@@ -167,6 +173,7 @@ def test_unknown_strategies_and_numbers_out_of_range_are_refused_before_anything
         boxes(trials=1, seed=0, vehicle="kinematic", think=40)
 
 
+@pytest.mark.long
 def test_command_prints_one_object(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out = tmp_path / "bench"
     words = ["bench", "table1", "--trials", "1", "--seed", "3", "--jobs", "1", "--out", str(out), "--json"]
@@ -198,6 +205,7 @@ def test_a_language_model_that_lacks_something_is_told_before_anything_is_flown(
     assert not folder.exists()
 
 
+@pytest.mark.long
 @pytest.mark.usefixtures("bad_plugins")
 def test_a_lying_language_model_changes_no_outcome() -> None:
     plain_records = [plain(r) for r in here(experiment("mint", trials=4)) if isinstance(r, TrialRecord)]

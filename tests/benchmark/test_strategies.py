@@ -39,6 +39,7 @@ def test_entropy_threshold_asks_all_that_is_even_and_nothing_above_a_bit() -> No
         EntropyThresholdStrategy(-1.0)
 
 
+@pytest.mark.long
 def test_conformal_set_grows_with_the_quantile_and_so_do_the_questions() -> None:
     asked = [
         flown(method_of("knowno").model_copy(update={"arguments": {"quantile": q}})).questions for q in (0.0, 0.9, 1.0)
@@ -50,6 +51,7 @@ def test_conformal_set_grows_with_the_quantile_and_so_do_the_questions() -> None
         KnowNoStrategy(1.5)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", ["knowno", "entropy-threshold"])
 @pytest.mark.parametrize("condition", [Condition(answer_error=0.2), Condition(unsure_rate=1.0)])
 def test_neither_enters_what_is_not_known_passable(name: str, condition: Condition) -> None:

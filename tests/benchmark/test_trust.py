@@ -11,6 +11,7 @@ from mintpilot.cli.main import main
 from mintpilot.mission import belief_state
 
 
+@pytest.mark.long
 def test_a_few_worlds_have_no_pestering_and_keep_delta() -> None:
     rows = {row.name: row for row in measure_trust(3)}
     pestered = next(row for name, row in rows.items() if "asked twice" in name)
@@ -22,6 +23,7 @@ def test_a_few_worlds_have_no_pestering_and_keep_delta() -> None:
     assert mean.low <= mean.value
 
 
+@pytest.mark.long
 def test_pestering_is_found_where_it_is(monkeypatch: pytest.MonkeyPatch) -> None:
     """With the update as it was once, when an unsure answer withdrew the very query only."""
     monkeypatch.setattr(belief_state, "topics", lambda query: frozenset({query.id}))

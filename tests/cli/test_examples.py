@@ -18,6 +18,7 @@ BUILDING = EXAMPLES / "my-building" / "mission.yaml"
 WITHOUT_SIMULATOR = "import sys; sys.modules['mujoco'] = None; from mintpilot.cli.main import main; sys.exit(main())"
 
 
+@pytest.mark.long
 def test_a_map_of_ones_own_is_planned_without_any_simulator():
     command = [sys.executable, "-c", WITHOUT_SIMULATOR, "plan", str(BUILDING), "--json"]
     done = subprocess.run(command, capture_output=True, text=True, stdin=subprocess.DEVNULL)
@@ -71,6 +72,7 @@ def test_the_map_is_the_one_that_the_script_draws(tmp_path):
     assert shades.tolist() == [0, 205, 254]
 
 
+@pytest.mark.long
 def test_the_map_of_ones_own_can_be_flown(tmp_path, capsys):
     out = str(tmp_path / "run")
     main(["run", str(BUILDING), "--operator", "scripted", "--vehicle", "kinematic", "--json", "--out", out])

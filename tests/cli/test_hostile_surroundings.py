@@ -35,6 +35,7 @@ def changed(folder: Path, old: str, new: str) -> Path:
     return file
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "vehicle",
     ["cruise_mps: 1.0e-300", "max_acceleration_mps2: 1.0e-9", "radius_m: 1.0e+200", "margin_m: 1.0e+9"],
@@ -47,6 +48,7 @@ def test_a_vehicle_that_cannot_be_is_refused_at_its_line(tmp_path, vehicle):
     assert f"(vehicle.{vehicle.partition(':')[0]})".encode() in done.stdout + done.stderr
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("character", ["\\e", "\\x07", "\\u202e", "\\u200f", "\\x9b"])
 @pytest.mark.parametrize("key", ["name", "regions[0].description", "instruction"])
 def test_what_steers_a_terminal_is_refused_at_its_line(tmp_path, key, character):
@@ -63,6 +65,7 @@ def test_what_steers_a_terminal_is_refused_at_its_line(tmp_path, key, character)
     assert b"\x1b" not in said
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("operator", ["terminal", "console,terminal"])
 def test_nobody_can_answer_from_dev_null(tmp_path, operator):
     done = program("run", str(EXAMPLE / "mission.yaml"), "--operator", operator, "--out", str(tmp_path / "run"))
@@ -77,6 +80,7 @@ def test_no_name_is_no_folder(words):
     assert b"give a file or a folder" in done.stderr
 
 
+@pytest.mark.long
 def test_a_pipe_is_no_mission(tmp_path):
     os.mkfifo(tmp_path / "mission.yaml")
     done = program("check", str(tmp_path / "mission.yaml"))
@@ -84,6 +88,7 @@ def test_a_pipe_is_no_mission(tmp_path):
     assert b"no regular file" in done.stdout + done.stderr
 
 
+@pytest.mark.long
 def test_somebody_elses_folder_is_not_written_into(tmp_path):
     (tmp_path / "report.html").write_text("mine")
     done = program("run", str(EXAMPLE / "mission.yaml"), "--operator", "scripted", "--out", str(tmp_path))
@@ -93,12 +98,14 @@ def test_somebody_elses_folder_is_not_written_into(tmp_path):
     assert [file.name for file in tmp_path.iterdir()] == ["report.html"]
 
 
+@pytest.mark.long
 def test_a_seed_that_is_none_is_refused():
     done = program("run", str(EXAMPLE / "mission.yaml"), "--operator", "scripted", "--seed", "-1")
     assert done.returncode == 2
     assert b"seed -1 must be" in done.stderr
 
 
+@pytest.mark.long
 def test_what_others_wrote_reaches_the_terminal_spelt_out():
     done = program("plan", str(EXAMPLE / "mission.yaml"), "--strategy", "\x1b[31mx")
     assert done.returncode == 2
@@ -106,6 +113,7 @@ def test_what_others_wrote_reaches_the_terminal_spelt_out():
     assert rb"\x1b[31mx" in done.stderr
 
 
+@pytest.mark.long
 def test_a_narrow_encoding_ends_no_mission(tmp_path):
     done = program(
         "run", str(EXAMPLE / "mission.yaml"), "--operator", "scripted", "--out", str(tmp_path / "run"),
@@ -114,6 +122,7 @@ def test_a_narrow_encoding_ends_no_mission(tmp_path):
     assert done.returncode == 0, done.stderr
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("number", "name"), [(signal.SIGTERM, b"SIGTERM"), (signal.SIGHUP, b"SIGHUP")])
 def test_being_told_to_end_is_named(tmp_path, number, name):
     out = tmp_path / "run"

@@ -6,10 +6,11 @@ import pytest
 
 from mintpilot.cli import interrupts
 from mintpilot.core.events import MissionEnded, Timed
+from mintpilot.core.message import verbatim
 from mintpilot.core.mission import Outcome, Verdict
 
 EVENT = Timed(stage="survey", seconds=0.0)
-END = MissionEnded(verdict=Verdict(outcome=Outcome.SUCCESS, reason="done"))
+END = MissionEnded(verdict=Verdict(outcome=Outcome.SUCCESS, reason=verbatim("done")))
 
 
 @pytest.fixture

@@ -51,6 +51,7 @@ print(code, *sys.modules)
 """
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("command", "forbidden"),
     [

@@ -25,6 +25,7 @@ def axe(page) -> list[str]:
     return [f"{v['id']}: {v['nodes'][0]['html'][:160]}" for v in found]
 
 
+@pytest.mark.long
 def test_a_flown_mission_is_shown_and_nothing_leaves_the_machine(browser):
     with console() as one:
         run_mission(demo_path("fire-warehouse"), vehicle="kinematic", progress=one.record)
@@ -48,6 +49,7 @@ def test_a_flown_mission_is_shown_and_nothing_leaves_the_machine(browser):
             assert stays_here(seen, one)
 
 
+@pytest.mark.long
 def test_clicks_keys_and_words_answer(browser):
     with console() as one, opened(browser, one.url()) as seen:
         page = seen.page
@@ -116,6 +118,7 @@ def test_planted_markup_stays_text(browser):
         assert seen.errors == []
 
 
+@pytest.mark.long
 def test_a_lost_link_is_said_and_loses_no_answer(browser):
     links, down = [], []
 
@@ -146,6 +149,7 @@ def test_a_lost_link_is_said_and_loses_no_answer(browser):
         assert page.inner_text("#link") == ""
 
 
+@pytest.mark.long
 def test_what_was_pressed_without_a_link_survives_a_reload_and_goes_to_no_other_mission(browser):
     down = [True]
     before = lambda page: page.route_web_socket(  # noqa: E731

@@ -135,6 +135,7 @@ def test_the_microphone_obeys_the_rules_for_voice(page: Page) -> None:
     assert stop.order is Order.HOLD
 
 
+@pytest.mark.long
 def test_what_is_not_understood_twice_is_left_to_the_screen(page: Page) -> None:
     page.asks()
     assert page.says("banana") == []
@@ -190,6 +191,7 @@ def playwright() -> Iterator[object]:
 FAKE = ("--use-fake-device-for-media-stream", "--autoplay-policy=user-gesture-required")
 
 
+@pytest.mark.long
 def test_sound_goes_from_the_browser_to_an_answer(playwright, tmp_path: Path) -> None:
     path = _recording(tmp_path / "said.wav", SpeechDouble().say("yes"))
     flags = (*FAKE, "--use-fake-ui-for-media-stream", f"--use-file-for-fake-audio-capture={path}")
@@ -238,6 +240,7 @@ def test_a_spoken_word_is_heard_by_the_real_recognisers(playwright, tmp_path: Pa
     browser.close()
 
 
+@pytest.mark.long
 def test_held_to_talk_only_what_is_said_while_holding_is_sent(playwright, tmp_path: Path) -> None:
     browser = _browser(playwright, *FAKE, "--use-fake-ui-for-media-stream")
     with console() as one, opened(browser, one.url()) as seen:
@@ -263,6 +266,7 @@ def test_held_to_talk_only_what_is_said_while_holding_is_sent(playwright, tmp_pa
     browser.close()
 
 
+@pytest.mark.long
 def test_a_microphone_that_is_refused_or_missing_is_said(playwright) -> None:
     refused = _browser(playwright, *FAKE, "--deny-permission-prompts")
     with console() as one, opened(refused, one.url()) as seen:

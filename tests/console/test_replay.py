@@ -52,6 +52,7 @@ class Told:
         self.said.append(text)
 
 
+@pytest.mark.long
 def test_a_run_is_told_again_as_it_was(flown) -> None:
     run, events = flown
     told = Told()
@@ -71,6 +72,7 @@ def test_a_run_that_was_broken_off_is_told_as_far_as_it_goes(flown, tmp_path: Pa
     assert 10 < len([e for e in told.events if isinstance(e, Stepped)]) < len(events)
 
 
+@pytest.mark.long
 def test_each_moment_is_what_a_page_showed_then(flown) -> None:
     """What the tape shows after a turn, in any order, against a board that saw the mission up to that turn."""
     run, _ = flown
@@ -157,6 +159,7 @@ def test_nothing_is_answered_or_ordered_beside_a_recorded_mission() -> None:
     assert [flying.take(client, one) for one in (Seek(n=1, time_s=1.0), Playing(n=1, speed=1.0))] == [False, False]
 
 
+@pytest.mark.long
 @pytest.mark.xdist_group("browser")
 def test_the_scrubber_shows_any_moment(browser, flown) -> None:
     run, _ = flown

@@ -76,6 +76,7 @@ def test_only_who_answers_may_tell() -> None:
     assert [desk.take(one, drew) for one in (seated, second, watching)] == [True, False, False]
 
 
+@pytest.mark.long
 @pytest.mark.xdist_group("browser")
 def test_a_region_is_drawn_told_of_confirmed_and_undone(browser):
     with console() as one:

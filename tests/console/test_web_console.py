@@ -213,6 +213,7 @@ def test_messages_that_are_too_long_or_too_many_end_the_link(console):
         assert closed_with(opened) == 4429
 
 
+@pytest.mark.long
 def test_a_browser_that_reads_nothing_holds_nobody_up(console):
     with link(console, browser="d" * 16, max_queue=1), link(console) as opened:
         for _ in range(3000):
@@ -221,6 +222,7 @@ def test_a_browser_that_reads_nothing_holds_nobody_up(console):
         assert pane(opened, "question", lambda d: d["id"] == "q1")
 
 
+@pytest.mark.long
 def test_a_slow_browser_loses_pictures_and_no_question(console):
     """It reads after three hundred pictures: some of them are gone, and the question is there."""
     lens = CameraModel(width=320, height=240, fx=277.0, fy=277.0, cx=160.0, cy=120.0)

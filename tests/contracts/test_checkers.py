@@ -88,6 +88,7 @@ class Pushy(ExhaustiveStrategy):
         return super().decide(replace(situation, silent=False))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("strategy", "said"),
     [(Keen, "nobody answers|do not know"), (Reckless, "without saying `unsafe`"), (Pushy, "nobody")],

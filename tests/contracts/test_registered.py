@@ -61,6 +61,7 @@ def test_objectives(name):
     check_objective(load("objective", name))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", names("strategy"))
 def test_strategies(name):
     check_strategy(load("strategy", name))
@@ -84,6 +85,7 @@ def test_namers(name):
     server.shut_down()
 
 
+@pytest.mark.long
 def test_recordings_are_frame_sources(tmp_path):
     from frames.recordings import poses, save_folder, save_tum, views
 

@@ -106,6 +106,7 @@ def test_choices_are_asked_only_where_that_is_wanted_and_only_where_they_tell_mo
     assert len(every) > len(plain)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seed", range(1, 7))
 def test_optimal_over_mixed_questions_never_takes_longer_than_yes_and_no_alone(seed: int) -> None:
     """The law of section 13, whole games against a brute-force plan space, every answer followed."""

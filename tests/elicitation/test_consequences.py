@@ -20,6 +20,7 @@ from oracles.worlds import random_world
 EXACT = AskingSettings(delta_c_s=0.0, alpha=0.0, floor=0.0, goal_entropy_bits=0.0, max_questions=60)
 
 
+@pytest.mark.long
 @settings(max_examples=40, deadline=None)
 @given(seed=st.integers(0, 100_000), regions=st.integers(0, 3), goals=st.sampled_from([1, 3, 6]))
 def test_texts_are_the_same_only_where_the_same_is_flown(seed: int, regions: int, goals: int) -> None:

@@ -168,6 +168,7 @@ def fewest_by_bits(s: QuerySituation) -> float:
     return follow((1 << n) - 1)
 
 
+@pytest.mark.long
 @settings(max_examples=12, deadline=None)
 @given(st.tuples(st.integers(0, 2**32 - 1), st.just(4), st.just(10), st.sampled_from([0.0, 0.05, 0.2])))
 @example((25, 4, 10, 0.0))

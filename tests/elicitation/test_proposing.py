@@ -99,6 +99,7 @@ HOSTILE = st.one_of(
 )
 
 
+@pytest.mark.long
 @settings(deadline=None, max_examples=200)
 @given(HOSTILE)
 def test_whatever_a_model_proposes_is_sound_or_nothing(text: str) -> None:
@@ -153,6 +154,7 @@ def test_what_must_not_be_done_is_never_left_to_a_model() -> None:
         parse_with_model("whatever happens do not touch the red box", _steps(("pick", "the red box", "")))
 
 
+@pytest.mark.long
 @settings(deadline=None, max_examples=100)
 @given(HOSTILE)
 def test_any_model_gives_a_task_or_the_rules_reason(said: str) -> None:

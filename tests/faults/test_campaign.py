@@ -14,9 +14,10 @@ from mintpilot.conformance.faults.drawing import drawn
 from mintpilot.conformance.faults.kinds import RULES, Adapter, Fault, FaultKind, rule_of
 from mintpilot.conformance.faults.ledger import Counter
 from mintpilot.conformance.faults.records_kept import kept
+from mintpilot.core.message import NOTHING
 from mintpilot.core.mission import Outcome, Verdict
 
-ENDED = Verdict(outcome=Outcome.SUCCESS, reason="")
+ENDED = Verdict(outcome=Outcome.SUCCESS, reason=NOTHING)
 
 
 def draw_of(kind: FaultKind, *, at_s: float = 4.0, lasts_s: float = float("inf"), size: float = 0.5):
@@ -42,6 +43,7 @@ def test_a_part_of_a_campaign_is_the_beginning_of_the_whole() -> None:
     assert set(small) <= set(large)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("kind", "outcomes"),
     [
@@ -61,6 +63,7 @@ def test_what_a_mission_comes_to_with_a_fault(tmp_path: Path, kind: FaultKind, o
     assert record.outcome in outcomes
 
 
+@pytest.mark.long
 def test_a_campaign_goes_on_where_it_stopped(tmp_path: Path) -> None:
     keys = [(Adapter.KINEMATIC, number) for number in (1, 4, 8)]
     store, heard = FaultStore(tmp_path), []

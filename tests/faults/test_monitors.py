@@ -12,6 +12,7 @@ from mintpilot.conformance.faults.kinds import FaultKind
 from mintpilot.conformance.faults.ledger import Commanded, Ledger, Said, Shown
 from mintpilot.conformance.faults.monitors import allowed, became_safe, commanded_safely, moved_safely, told_the_truth
 from mintpilot.conformance.sample import sample_problem, sample_world
+from mintpilot.core.message import NOTHING
 from mintpilot.core.mission import Outcome, Verdict
 from mintpilot.core.motion import FollowTrajectory, Land
 from mintpilot.core.predicate import Combine, Literal, Saying, SayingKind
@@ -106,7 +107,7 @@ def test_a_flight_into_a_wall_is_found_by_the_map_and_by_the_truth() -> None:
     way = geometry.densely(np.array([START, WALL]), 0.05)
     ledger.trace = [(0.05 * i, *point) for i, point in enumerate(way)]
     assert "touch" in rules_of(moved_safely(ledger, world))
-    success = Verdict(outcome=Outcome.SUCCESS, reason="")
+    success = Verdict(outcome=Outcome.SUCCESS, reason=NOTHING)
     assert "verdict" in rules_of(told_the_truth(ledger, world, success))
     assert rules_of(told_the_truth(ledger, world, replace(success, outcome=Outcome.COLLISION))) == []
 
@@ -114,8 +115,8 @@ def test_a_flight_into_a_wall_is_found_by_the_map_and_by_the_truth() -> None:
 def test_a_success_that_was_none_and_a_collision_that_was_none_are_lies() -> None:
     world, ledger = sample_world(), ledger_with()
     for outcome in (Outcome.SUCCESS, Outcome.COLLISION):
-        assert "verdict" in rules_of(told_the_truth(ledger, world, Verdict(outcome=outcome, reason="")))
-    assert rules_of(told_the_truth(ledger, world, Verdict(outcome=Outcome.ABORTED, reason=""))) == []
+        assert "verdict" in rules_of(told_the_truth(ledger, world, Verdict(outcome=outcome, reason=NOTHING)))
+    assert rules_of(told_the_truth(ledger, world, Verdict(outcome=Outcome.ABORTED, reason=NOTHING))) == []
 
 
 def test_flying_on_where_the_map_has_long_said_no_is_found() -> None:
@@ -131,7 +132,7 @@ def test_flying_on_where_the_map_has_long_said_no_is_found() -> None:
 
 
 def test_who_does_not_come_to_rest_in_time_is_found() -> None:
-    ledger, verdict = ledger_with(), Verdict(outcome=Outcome.ABORTED, reason="")
+    ledger, verdict = ledger_with(), Verdict(outcome=Outcome.ABORTED, reason=NOTHING)
     ledger.trace = [(0.05 * i, 0.05 * i, 2.0, 1.0) for i in range(200)]
     ledger.known.append((3.0, FaultKind.CAMERA_GONE, ""))
     assert rules_of(became_safe(ledger, verdict)) == ["not safe in time"]

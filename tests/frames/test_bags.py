@@ -120,6 +120,7 @@ def read(where: Path) -> tuple[list, AlignedFrames]:
     return list(source), source
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("mcap", [True, False])
 @pytest.mark.parametrize("compressed", [True, False])
 def test_pictures_lens_and_poses_come_back(tmp_path: Path, mcap: bool, compressed: bool) -> None:
@@ -143,6 +144,7 @@ def test_a_bag_without_depth_is_refused_with_its_topics(tmp_path: Path) -> None:
         read(write_bag(tmp_path / "bag", mcap=True, depth=False))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("mcap", [True, False])
 def test_a_bag_that_is_cut_short_is_read_to_the_cut_or_refused(tmp_path: Path, mcap: bool) -> None:
     bag = write_bag(tmp_path / "bag", mcap=mcap)

@@ -68,6 +68,7 @@ def test_pictures_of_a_software_device_come_back() -> None:
     assert found[0].camera == true.camera
 
 
+@pytest.mark.long
 def test_without_camera_or_library_it_says_what_to_do() -> None:
     with pytest.raises((DeviceError, MissingPartError), match="RealSense"):
         next(RealSense("", SourceOptions()).frames())

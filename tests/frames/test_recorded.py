@@ -32,6 +32,7 @@ def refusal(tmp_path: Path, matrices: list[np.ndarray], per_metre: float = 1000.
     return str(caught.value)
 
 
+@pytest.mark.long
 def test_the_tum_layout_gives_metres_poses_and_a_floor(tmp_path: Path) -> None:
     save_tum(tmp_path, views(), poses())
     source = aligned(tmp_path)
@@ -134,6 +135,7 @@ def test_frames_without_sense_are_left_out_and_counted(tmp_path: Path) -> None:
     assert "jumped" in said
 
 
+@pytest.mark.long
 def test_a_broken_picture_among_others_is_left_out_and_said(tmp_path: Path) -> None:
     save_folder(tmp_path, views(), poses())
     path = tmp_path / "depth" / "00002.png"
@@ -143,6 +145,7 @@ def test_a_broken_picture_among_others_is_left_out_and_said(tmp_path: Path) -> N
     assert any("00002" in text for text in source.warnings)
 
 
+@pytest.mark.long
 def test_missing_frames_do_not_matter(tmp_path: Path) -> None:
     eyes = [(0.0, 0.04 * i, 1.5) for i in range(10)]
     save_tum(tmp_path, views(eyes), poses(eyes))
@@ -160,12 +163,14 @@ def test_pictures_without_depth_say_so(value: float) -> None:
     assert any("depth" in text for text in source.warnings)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("level", "word"), [(0, "black"), (255, "over-exposed")])
 def test_black_and_over_exposed_pictures_say_so(level: int, word: str) -> None:
     frames = [replace(f, rgb=np.full_like(f.rgb, level)) for f in views()]
     assert any(word in text for text in AlignedFrames(_Given(frames, poses())).warnings)
 
 
+@pytest.mark.long
 def test_colour_and_depth_of_different_size(tmp_path: Path) -> None:
     frame = views()[0]
     color, depth = save_picture(tmp_path, "a", frame)

@@ -37,6 +37,7 @@ items = st.one_of(
 plans = st.builds(FlightPlan, home=points, items=st.lists(items, max_size=6).map(tuple))
 
 
+@pytest.mark.long
 @given(
     plan=plans,
     fence=st.lists(st.tuples(st.floats(-80, 80), st.floats(-170, 170)), min_size=3, max_size=5).map(tuple),

@@ -54,6 +54,7 @@ def test_a_mission_is_exported_and_its_plan_is_a_mission_again(
     assert "QGC WPL 110" in capsys.readouterr().out
 
 
+@pytest.mark.long
 def test_a_plan_that_rests_on_a_question_is_exported_from_its_run(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

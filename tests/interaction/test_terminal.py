@@ -310,6 +310,7 @@ def terminal() -> Iterator[Terminal]:
     made.leave()
 
 
+@pytest.mark.long
 def test_at_a_terminal_only_what_is_typed_after_the_question_answers_it(terminal):
     terminal.expect("Your answer")
     terminal.type(b"y\nn\nn\n")
@@ -321,6 +322,7 @@ def test_at_a_terminal_only_what_is_typed_after_the_question_answers_it(terminal
     assert "got no" not in terminal.seen
 
 
+@pytest.mark.long
 def test_at_a_terminal_a_letter_answers_alone_and_not_while_more_is_typed(terminal):
     terminal.expect("Your answer")
     terminal.type(b"y")
@@ -337,6 +339,7 @@ def test_at_a_terminal_a_letter_answers_alone_and_not_while_more_is_typed(termin
     assert terminal.seen.count("4 s  Your answer") >= 1, "the seconds that are left are counted down"
 
 
+@pytest.mark.long
 def test_at_a_terminal_ctrl_d_is_answered(terminal):
     terminal.expect("Your answer")
     terminal.type(b"\x04")
@@ -385,6 +388,7 @@ def test_ctrl_c_at_a_terminal_ends_the_wait_at_once(terminal):
     terminal.expect("interrupted")
 
 
+@pytest.mark.long
 def test_ctrl_d_at_a_terminal_is_silence(terminal):
     terminal.expect("Your answer")
     terminal.type(b"\x04")
@@ -399,6 +403,7 @@ def test_an_answer_that_comes_late_is_waited_for(pipe):
     assert answer.latency_s >= 0.1
 
 
+@pytest.mark.long
 def test_a_signal_while_waiting_does_not_hang(pipe):
     """Ctrl-C sent as a signal to a process that waits at a pipe."""
     process = subprocess.Popen([sys.executable, "-c", CHILD], stdin=pipe.fileno(), stdout=subprocess.PIPE)

@@ -23,7 +23,7 @@ def says(*steps: tuple[str, str, str], keep_out: list[dict[str, object]] | None 
 def test_another_language_becomes_typed_steps_that_wait_for_a_yes() -> None:
     model = says(("go", "the red barrel", ""), keep_out=[{"what": "the smoke", "metres": 3}])
     task = parse_with_model(GERMAN, model)
-    assert [step.text for step in task.steps] == ["go to the red barrel"]
+    assert [str(step.text) for step in task.steps] == ["go to the red barrel"]
     assert task.keep_out == ("smoke", "smoke (3 m)")
     assert task.needs_confirmation
     assert task.instruction == GERMAN

@@ -40,9 +40,9 @@ HOME_M = (0.0, 0.0, 1.0)
 )  # fmt: skip
 def test_a_phrase_becomes_a_rule_beside_the_steps(text: str, steps: list[str], formula: str) -> None:
     task = parse_instruction(text, home_m=HOME_M)
-    assert [step.text for step in task.steps] == steps
+    assert [str(step.text) for step in task.steps] == steps
     assert [rule.formula for rule in task.rules] == [formula]
-    assert f"rule: {task.rules[0].text}" in list(step_lines(task))
+    assert f"rule: {task.rules[0].text}" in map(str, step_lines(task))
 
 
 @pytest.mark.parametrize(
@@ -69,5 +69,5 @@ def test_a_rule_without_one_meaning_refuses_the_instruction(text: str) -> None:
 
 def test_many_things_before_a_step_are_an_order_and_no_rule() -> None:
     task = parse_instruction("Check every room before you go to the van", home_m=HOME_M)
-    assert [step.text for step in task.steps] == ["look into every room", "go to the van"]
+    assert [str(step.text) for step in task.steps] == ["look into every room", "go to the van"]
     assert task.rules == ()

@@ -78,6 +78,7 @@ def test_an_empty_builder_knows_nothing() -> None:
     assert (builder().snapshot().cells == Cell.UNKNOWN).all()
 
 
+@pytest.mark.long
 def test_free_space_is_free_and_solids_are_not() -> None:
     # With noise, a surface seen at a grazing angle may lose a voxel of its skin.
     for noise, lost in ((0.0, 0.0), (0.005, 0.01)):

@@ -160,6 +160,7 @@ def test_aliases_in_the_header_are_refused(tmp_path):
         load_ros_map(tmp_path / "map.yaml")
 
 
+@pytest.mark.long
 @given(
     yaw=st.one_of(st.floats(-4, 4), st.sampled_from([np.pi / 2, -np.pi / 2, np.pi, np.pi / 4])),
     seed=st.integers(0, 10**6),

@@ -25,6 +25,7 @@ def world(seed: int, shape: tuple[int, int, int]) -> SemanticMap:
     return SemanticMap(frame=GridFrame(origin_m=(-3.0, 5.0, 0.0), resolution_m=0.5, shape=shape), cells=cells)
 
 
+@pytest.mark.long
 @settings(deadline=None, max_examples=50)
 @given(seed=st.integers(0, 10**6), flat=st.booleans(), spare=st.floats(0.0, 2.0))
 def test_all_that_can_be_reached_is_kept_with_its_rim(seed, flat, spare):

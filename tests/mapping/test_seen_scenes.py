@@ -66,6 +66,7 @@ def mapped(scene: Scene, seed: int) -> tuple[SemanticMap, SemanticMap]:
     return builder.snapshot(), truth
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seed", [1, pytest.param(2, marks=pytest.mark.slow)])
 def test_boxes_are_found_with_their_looks(seed: int) -> None:
     scene = medicine_boxes(seed).scene

@@ -28,6 +28,7 @@ from mintpilot.core.inputs import (
     MotionEnded,
     Ticked,
 )
+from mintpilot.core.message import NOTHING, Message
 from mintpilot.core.mission import AskingSettings, Mission
 from mintpilot.core.motion import FollowTrajectory, Motion, MotionEnd
 from mintpilot.core.observation import RegionKind
@@ -159,7 +160,7 @@ class Story:
         self.time_s += seconds
         self.feed(Ticked(time_s=self.time_s, vehicle=self.vehicle()))
 
-    def look(self, *, obstruction: str = "") -> None:
+    def look(self, *, obstruction: Message = NOTHING) -> None:
         """A new map, with what was answered carried over as map sources do."""
         self.feed(MapObserved(time_s=self.time_s, map=self._believed(), obstruction=obstruction))
 

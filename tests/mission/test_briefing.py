@@ -62,21 +62,21 @@ def test_the_briefing_says_steps_unknowns_and_battery() -> None:
 def test_after_a_yes_it_flies_and_the_record_says_who_said_go() -> None:
     verdict, events = fly(scripted_operator(WORLD, OperatorSpec()))
     assert verdict.outcome is Outcome.SUCCESS
-    assert [e.text for e in events if isinstance(e, Noticed) and e.kind == "go"] == ["scripted said go."]
+    assert [str(e.text) for e in events if isinstance(e, Noticed) and e.kind == "go"] == ["scripted said go."]
 
 
 @pytest.mark.parametrize("reply", [Reply.NO, Reply.UNSURE, Reply.TIMEOUT])
 def test_no_doubt_and_silence_leave_it_on_the_ground(reply: Reply) -> None:
     verdict, events = fly(RecordedOperator([reply]))
     assert verdict.outcome is Outcome.ABORTED
-    assert "stayed on the ground" in verdict.reason
+    assert "stayed on the ground" in str(verdict.reason)
     assert not any(isinstance(e, LegFlown) for e in events)
 
 
 def test_a_task_that_a_model_read_is_always_briefed() -> None:
     read = replace(WORLD, task=replace(WORLD.task, needs_confirmation=True))
     verdict, _ = fly(RecordedOperator([Reply.NO]), world=read, briefs=False)
-    assert "stayed on the ground" in verdict.reason
+    assert "stayed on the ground" in str(verdict.reason)
     assert any("language model" in line for line in briefing_of(replace(PARTS, task=read.task), WORLD.map).lines)
 
 
@@ -122,6 +122,7 @@ def test_what_is_lost_before_take_off_ends_it_and_better_words_change_nothing() 
     assert after.ended
 
 
+@pytest.mark.long
 def test_a_briefed_mission_is_thought_through_again(tmp_path) -> None:  # type: ignore[no-untyped-def]
     run = RunFolder(tmp_path / "run")
     with (

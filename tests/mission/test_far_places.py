@@ -29,6 +29,7 @@ def to_and_fro(**asking: object) -> MissionFile:
     )
 
 
+@pytest.mark.long
 def test_a_flight_longer_than_the_usual_price_of_failing_is_flown() -> None:
     record = run_mission(to_and_fro(), vehicle="kinematic")
     assert record.outcome is Outcome.SUCCESS
@@ -44,6 +45,7 @@ def test_what_is_not_worth_its_flight_is_left_and_said() -> None:
     assert "It leaves undone: go to the place at (55, 4) (the way there needs 19" in record.certificate.text
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("price_s", [300.0, 5000.0])
 def test_a_stated_price_stays_as_it_is(price_s: float) -> None:
     record = run_mission(to_and_fro(failure_price_s=price_s), vehicle="kinematic")

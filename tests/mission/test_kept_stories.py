@@ -25,6 +25,7 @@ from mintpilot.core.inputs import (
     QuestionReworded,
     QuestionShown,
 )
+from mintpilot.core.message import NOTHING, Message, verbatim
 from mintpilot.core.mission import AskingSettings, WhileWaiting
 from mintpilot.core.motion import MotionEnd
 from mintpilot.core.query import Answer, Order, Reply, Standing
@@ -174,7 +175,7 @@ def motion(story: Story, *ends: MotionEnd, by_hand: str = "") -> None:
             story.end_motion(end, by_hand=by_hand)
 
 
-def seen(story: Story, obstruction: str) -> None:
+def seen(story: Story, obstruction: Message) -> None:
     story.cloud()
     story.look(obstruction=obstruction)
 
@@ -232,8 +233,8 @@ EVENTS: dict[str, Callable[[Story], object]] = {
     "thought fails": lambda s: thought(s, "fails"),
     "thought overdue": lambda s: thought(s, "overdue"),
     "thought late twice": lambda s: thought(s, "late", "late"),
-    "something new in the way": partial(seen, obstruction="a cloud"),
-    "something new": partial(seen, obstruction=""),
+    "something new in the way": partial(seen, obstruction=verbatim("a cloud")),
+    "something new": partial(seen, obstruction=NOTHING),
     "motion stopped": lambda s: motion(s, MotionEnd.STOPPED),
     "motion refused": lambda s: motion(s, MotionEnd.REFUSED),
     "motion refused often": lambda s: motion(s, *[MotionEnd.REFUSED] * 3),
@@ -254,6 +255,7 @@ def story_of(phase: str, event: str) -> str:
     return story.told(since)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("event", EVENTS)
 def test_the_mission_does_what_it_did(event: str) -> None:
     same_as_kept(KEPT, {f"{phase} + {event}": story_of(phase, event) for phase in PHASES})

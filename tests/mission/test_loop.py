@@ -152,6 +152,7 @@ def test_one_yes_is_not_enough_when_answers_may_be_wrong() -> None:
     assert yes >= 2 or not enters_cloud(path)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("error", [0.0, 0.02, 0.3])
 @pytest.mark.parametrize("budget", [0, 1, 3, 5])
 def test_the_number_of_questions_stays_within_the_budget(error: float, budget: int) -> None:

@@ -79,6 +79,7 @@ def test_an_order_ends_what_is_done_meanwhile() -> None:
     assert legs[0].log.time_s[-1] < 3.5
 
 
+@pytest.mark.long
 def test_a_mission_with_flights_meanwhile_is_thought_through_again_alike(tmp_path: Path) -> None:
     _, legs = flown(toxic=True, think=6.0, out=tmp_path / "run")
     assert any(leg.phase == "meanwhile" for leg in legs)

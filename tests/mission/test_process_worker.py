@@ -73,6 +73,7 @@ def wait(worker: ProcessWorker, time_s: float = 0.0) -> DeliberationEnded:
     raise AssertionError("nothing came back")
 
 
+@pytest.mark.long
 def test_it_decides_what_the_inline_worker_decides(
     worker: ProcessWorker, thoughts: list[tuple[Request, DeliberationEnded]]
 ) -> None:
@@ -85,6 +86,7 @@ def test_it_decides_what_the_inline_worker_decides(
         assert first_difference(inline.decision, ended.decision, tolerance=1e-9) == ""
 
 
+@pytest.mark.long
 def test_only_the_newest_request_waits(
     worker: ProcessWorker, thoughts: list[tuple[Request, DeliberationEnded]]
 ) -> None:
@@ -96,6 +98,7 @@ def test_only_the_newest_request_waits(
     assert worker.poll(0.0) == ()
 
 
+@pytest.mark.long
 def test_a_process_that_dies_gives_a_failure_and_is_started_again(
     thoughts: list[tuple[Request, DeliberationEnded]],
 ) -> None:
@@ -114,6 +117,7 @@ def test_a_process_that_dies_gives_a_failure_and_is_started_again(
         worker.close()
 
 
+@pytest.mark.long
 def test_a_process_that_dies_again_and_again_is_given_up(thoughts: list[tuple[Request, DeliberationEnded]]) -> None:
     worker = ProcessWorker(MAKE)
     try:
@@ -138,6 +142,7 @@ def test_a_process_that_dies_again_and_again_is_given_up(thoughts: list[tuple[Re
         worker.close()
 
 
+@pytest.mark.long
 def test_a_stuck_process_is_replaced_when_a_newer_request_comes(
     thoughts: list[tuple[Request, DeliberationEnded]],
 ) -> None:
@@ -165,6 +170,7 @@ def _never() -> DeliberationParts:
     raise InputError("too late")
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("make", "ready_s", "said"), [(_no_parts, 60.0, "no planner 'x'"), (_never, 0.2, "0.2 s")])
 def test_a_process_that_does_not_get_ready_is_an_error(
     make: Callable[[], DeliberationParts], ready_s: float, said: str

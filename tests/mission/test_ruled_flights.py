@@ -94,6 +94,7 @@ class Pleased:
         return Verdict(outcome=Outcome.SUCCESS, reason="Every goal was reached.")
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("rule", "kept"),
     [
@@ -153,6 +154,7 @@ def is_kept(world, flown):
     return all(monitor.is_kept(rule.formula, of, len(points)) for rule in world.task.rules)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("rule", "does"),
     [

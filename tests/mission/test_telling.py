@@ -326,6 +326,7 @@ class Tells:
         return tuple(replace(make(self.known), time_s=time_s) for make in due)
 
 
+@pytest.mark.long
 def test_a_drawn_region_is_not_entered_afterwards_and_the_flight_replays(tmp_path: Path) -> None:
     """Drawn across the way that is being flown, beside the one that is left; then a second one."""
     drawn = [

@@ -97,6 +97,7 @@ def test_a_zone_that_was_looked_around_in_often_enough_is_left_out():
     assert zones[0].id in {zone.id for zone in unseen_zones(seen, LIMITS, START_M, done[:-1])}
 
 
+@pytest.mark.long
 @settings(deadline=None, max_examples=40)
 @given(st.lists(st.integers(0, 23), max_size=16), st.integers(0, 2**31))
 def test_zones_are_few_apart_and_looked_at_from_where_the_drone_can_be(columns: list[int], seed: int):

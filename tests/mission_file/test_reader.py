@@ -161,14 +161,25 @@ BAD = [
     ("priors", {"passable": 7}, "priors.passable", ["7 must be at most 1"]),
     ("operator", {"answer_error": -1}, "operator.answer_error", ["-1 must be at least 0"]),
     ("truth", {"smoke-9": "passable"}, "truth.smoke-9", ["no region, room or phrase", "did you mean 'smoke-1'?"]),
-    ("looks", [{"at": "smoke-9", "viewpoint_m": [2, 5]}], "looks[0].at", ["no region 'smoke-9'", "mean 'smoke-1'?"]),
     (
         "looks",
-        [{"at": "smoke-1", "viewpoint_m": [x, 5]} for x in (2, 3)],
+        [{"at": "smoke-9", "viewpoint_m": [0.5, 0.5]}],
+        "looks[0].at",
+        ["no region 'smoke-9'", "mean 'smoke-1'?"],
+    ),
+    (
+        "looks",
+        [{"at": "smoke-1", "viewpoint_m": [0.5, 0.5], "dwell_s": s} for s in (2, 3)],
         "looks[1].at",
         ["'smoke-1' is looked at twice"],
     ),
     ("looks", [{"at": "smoke-1", "viewpoint_m": [2, 5], "sees": 0}], "looks[0].sees", ["0 must be above 0"]),
+    ("looks", [{"at": "smoke-1", "viewpoint_m": [99, 5]}], "looks[0].viewpoint_m", ["outside the map"]),
+    ("looks", [{"at": "smoke-1", "viewpoint_m": [1.5, 0.5]}], "looks[0].viewpoint_m", ["occupied cell"]),
+    ("world/regions/0/description", 3, "world.regions[0].description", ["3 must be text", "what the operator"]),
+    ("world/regions/0/description", {"en": 5}, "world.regions[0].description.en", ["5 must be text"]),
+    ("world/regions/0/description", {"xx": "y"}, "world.regions[0].description.xx", ["known: de, en, es, fr"]),
+    ("world/regions/0/description", {}, "world.regions[0].description", ["at least 1 items"]),
     ("truth", {"smoke-1": "present"}, "truth.smoke-1", ["'present' is not a value", "blocked, passable"]),
     ("truth", {"the box": "box-9"}, "truth.the box", ["'box-9' is not a value"]),
     ("truth", {"room-1": True}, "truth.room-1", ["true must be text"]),
@@ -181,6 +192,7 @@ BAD = [
 ]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("place", "value", "where", "words"), BAD, ids=[f"{b[0]}={b[1]}"[:60] for b in BAD])
 def test_each_mistake_is_named_with_its_place(tmp_path, place, value, where, words):
     path = write(tmp_path, changed(MISSION, place, value))
@@ -284,6 +296,7 @@ YAML = [
 ]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("data", "line", "words"), YAML, ids=[y[2] for y in YAML])
 def test_unreadable_yaml(tmp_path, data, line, words):
     problems = find_problems(write(tmp_path, data))
@@ -329,6 +342,7 @@ def _places(value: object, path: str = "") -> list[str]:
     return [place for key, inner in items for place in (f"{path}{key}", *_places(inner, f"{path}{key}/"))]
 
 
+@pytest.mark.long
 @given(mission=st.sampled_from([MISSION, SCENE]), data=st.data(), value=values)
 @settings(max_examples=80, deadline=None)
 def test_any_value_in_any_place_is_accepted_or_named_there(tmp_path_factory, mission, data, value):

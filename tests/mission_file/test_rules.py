@@ -47,6 +47,7 @@ def test_every_pattern_is_read(tmp_path, rule, formula):
     assert [r.formula for r in rules_of(read_mission(path))] == [formula]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("rules", "said"),
     [

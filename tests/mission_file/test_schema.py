@@ -61,6 +61,7 @@ def test_the_published_schema_is_current():
     assert published.read_text(encoding="utf-8") == json_schema(), "run: make docs"
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda p: p.parent.name + "/" + p.name)
 def test_examples_obey_the_published_schema(path):
     validator = jsonschema.Draft202012Validator(json.loads(json_schema()))

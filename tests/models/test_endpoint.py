@@ -224,6 +224,7 @@ def test_it_works_inside_a_running_event_loop(server: Server) -> None:
     assert asyncio.run(inside()) == "hello"
 
 
+@pytest.mark.long
 def test_the_client_is_imported_only_where_a_server_is_configured() -> None:
     code = (
         "import sys, mintpilot.language, mintpilot.models.endpoint, mintpilot.assembly.talk; "

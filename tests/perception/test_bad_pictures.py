@@ -53,6 +53,7 @@ def certain(found: tuple[Detection, ...]) -> set[str]:
     return {d.label for d in found if d.label in ("person", "fire", "smoke", "glow", "door")}
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", BAD)
 def test_nothing_dangerous_is_claimed_of_a_bad_picture(name: str) -> None:
     bad = BAD[name](picture([BOX], pitch_rad=0.35))
@@ -63,6 +64,7 @@ def test_nothing_dangerous_is_claimed_of_a_bad_picture(name: str) -> None:
         assert 0 <= one.score <= 1
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", BAD)
 @pytest.mark.parametrize("perception", [GeometricPerception, SegmentPerception])
 def test_no_bad_picture_breaks_perception(name: str, perception: type[Perception]) -> None:

@@ -48,6 +48,7 @@ def a_frame(width: int, height: int, depth: np.ndarray, rgb: np.ndarray | None =
     )
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("colour", sorted(PAINTS))
 @pytest.mark.parametrize("light", [(1.0, 1.0, 1.0), (0.75, 0.74, 0.70)])
 def test_a_box_is_found_with_its_place_colour_size_and_shape(colour: str, light: tuple[float, float, float]) -> None:

@@ -19,6 +19,7 @@ OURS_AND_SCIPYS = [
 ]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("ours", "theirs"), OURS_AND_SCIPYS)
 @given(arrays(bool, st.tuples(st.integers(1, 12), st.integers(1, 12))), st.integers(1, 4))
 def test_masks_change_as_in_scipy(ours, theirs, mask, steps):

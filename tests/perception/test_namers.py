@@ -78,6 +78,7 @@ def test_labels_from_text_are_short_words(text: str) -> None:
     assert all(c.isalpha() or c == " " for c in label)
 
 
+@pytest.mark.long
 def test_a_real_reader_reads_a_printed_word() -> None:
     pytest.importorskip("rapidocr_onnxruntime", reason="needs rapidocr-onnxruntime")
     from PIL import Image, ImageDraw, ImageFont

@@ -45,6 +45,7 @@ def test_what_stands_is_found_whatever_its_colour(paint: tuple[float, float, flo
     assert thing.label == "box"
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("name", "turned"),
     [

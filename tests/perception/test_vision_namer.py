@@ -50,6 +50,7 @@ def test_each_thing_gets_the_name_that_the_model_gives_to_its_mark(server: Visio
     assert "looked for, if they are there: medicine" in server.prompts[0]
 
 
+@pytest.mark.long
 def test_without_the_model_the_same_things_are_seen_and_it_is_said_once(server: VisionServer) -> None:
     perception = seeing(server)
     before = [d.box_m for d in perception.detect(FRAME, 0)]
@@ -88,6 +89,7 @@ HOSTILE = [
 ]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("text", HOSTILE)
 def test_answers_of_another_form_are_asked_for_once_more_and_then_left(text: str, server: VisionServer) -> None:
     server.answer = lambda *_: text
@@ -141,6 +143,7 @@ def segments() -> tuple[Segment, ...]:
     return keeping.segments
 
 
+@pytest.mark.long
 @settings(max_examples=60, deadline=None)
 @given(ANYTHING)
 def test_whatever_a_model_says_names_are_words_with_probabilities(
@@ -164,6 +167,7 @@ def test_nouns_are_at_most_three_words_of_letters(text: str) -> None:
     assert all(c.isalpha() or c == " " for c in noun)
 
 
+@pytest.mark.long
 def test_a_picture_is_asked_about_once_and_the_budget_holds() -> None:
     model = Scripted(lambda: json.dumps({"things": []}))
     perception = SegmentPerception(namers=[VisionNamer(model, budget=2)])
@@ -208,6 +212,7 @@ def test_namers_need_a_perception_that_takes_them_and_a_model_needs_an_address()
         make_perception(Seeing(perception="segments", namers=("vision",)), {})
 
 
+@pytest.mark.long
 def test_doctor_says_whether_the_model_answers_about_pictures(
     server: VisionServer, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -6,6 +6,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 KERNEL = """
 from mintpilot.core.compiled import compiled
 from helper import STEP, twice
@@ -34,6 +36,7 @@ def run(folder: Path) -> list[str]:
     return done.stdout.split()
 
 
+@pytest.mark.long
 def test_a_changed_helper_is_not_served_from_the_cache(tmp_path: Path) -> None:
     (tmp_path / "kernel.py").write_text(KERNEL)
     (tmp_path / "helper.py").write_text(HELPER.format(step=1, factor=2))

@@ -121,6 +121,7 @@ def test_equals_an_independent_dijkstra(shape: tuple[int, int, int], blocked: fl
             check_path(free, start, goal, *found)
 
 
+@pytest.mark.long
 @settings(deadline=None, max_examples=60)
 @given(
     shape=st.sampled_from([(1, 20, 30), (1, 40, 9), (5, 8, 9)]),

@@ -49,6 +49,7 @@ worlds = st.tuples(
 )
 
 
+@pytest.mark.long
 @settings(deadline=None, max_examples=60)
 @given(world=worlds, tight=st.booleans())
 def test_equals_replanning_under_every_hypothesis(world: tuple, tight: bool) -> None:

@@ -68,7 +68,7 @@ def test_of_stops_that_exclude_each_other_the_dearer_is_done_and_the_other_named
     assert done(made) == ["east"]
     (left,) = made.leaves_undone
     assert (left.stop.id, left.resource, left.needed_s, left.available_s) == ("west", Shortage.BATTERY, 20.0, 5.0)
-    assert left.reason == "the way there needs 20 s, the battery gives 5 s"
+    assert str(left.reason) == "the way there needs 20 s, the battery gives 5 s"
     assert made.undone_s == 100
 
 

@@ -56,6 +56,7 @@ zones = st.tuples(st.integers(0, 10), st.integers(0, 10), st.integers(1, 5), st.
 )
 
 
+@pytest.mark.long
 @settings(deadline=None)
 @given(st.sampled_from(sorted(SAID)), zones, st.lists(points, min_size=1, max_size=4), st.sampled_from((0.0, 0.1)))
 def test_what_is_said_of_a_way_is_true_of_all_its_points_and_of_those_beside_it(about, cells, way, spare):

@@ -257,7 +257,7 @@ def test_thirty_rooms_in_the_way_stay_bounded_and_say_so() -> None:
     with_gaps = problem(cells, go(39.25, 0.25), regions=regions, gaps=gaps, limits=thin)
     space = GridPlanner().open(with_gaps)
     assert space.optimistic(Assumptions()) is None  # 7 of 70 walls of smoke count as blocked
-    assert "taken as blocked" in space.notes[0]
+    assert "taken as blocked" in str(space.notes[0])
 
 
 def test_compiling_ahead_can_be_done_twice() -> None:

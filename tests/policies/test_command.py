@@ -42,6 +42,7 @@ def test_a_mission_is_planned_by_it_as_without(learned, capsys) -> None:
     assert by_policy["expected_questions"] == plain["expected_questions"]
 
 
+@pytest.mark.long
 def test_a_mission_is_flown_and_replayed_by_it(learned, tmp_path, capsys) -> None:
     text = yaml.safe_load(EXAMPLE.read_text())
     text["asking"]["impact_metric"] = f"q-value:{learned}"
@@ -61,6 +62,7 @@ def test_a_mission_is_flown_and_replayed_by_it(learned, tmp_path, capsys) -> Non
     assert main(["replay", "--verify", str(tmp_path / "run")]) == 0
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("planner", "said"),
     [
@@ -87,6 +89,7 @@ def test_a_metric_that_cannot_be_had_is_a_mistake_of_the_file(tmp_path, capsys) 
     assert "none.npz: there is no such file" in capsys.readouterr().out
 
 
+@pytest.mark.long
 def test_a_policy_of_another_mission_flies_nothing(learned, tmp_path, capsys) -> None:
     other = EXAMPLE.parents[1] / "my-building" / "mission.yaml"
     assert main(["run", str(other), *FLY, "--planner", f"policy:{learned}", "--out", str(tmp_path / "run")]) == 1

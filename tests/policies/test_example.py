@@ -25,6 +25,7 @@ def test_it_is_small() -> None:
     assert NETWORK.stat().st_size < 100_000
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("truth", [(a, b) for a in (PASSABLE, BLOCKED) for b in (PASSABLE, BLOCKED)])
 def test_it_flies_the_mission(truth) -> None:
     outcome, path = flown(load_policy(NETWORK), truth, metric=True)

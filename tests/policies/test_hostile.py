@@ -107,6 +107,7 @@ HOSTILE = [Smoker, Drunk, Straight, Scribbler, Nan, Endless, Hopeless, Crash, Wo
 REFUSED = (Nan, Endless, Crash, Words, Short)
 
 
+@pytest.mark.long
 @settings(max_examples=40, deadline=None)
 @given(seed=st.integers(0, 2**31), world=st.integers(0, 5), blocked=st.integers(0, 7))
 def test_no_plan_of_any_policy_enters_what_is_not_free(seed, world, blocked) -> None:

@@ -46,6 +46,7 @@ def compare(seeds: range) -> int:
     return some
 
 
+@pytest.mark.long
 def test_exact_values_judge_as_the_regret_rule() -> None:
     assert compare(range(12)) >= 4
 

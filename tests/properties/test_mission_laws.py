@@ -11,6 +11,7 @@ from dataclasses import replace
 from functools import cache
 
 import numpy as np
+import pytest
 from hypothesis import HealthCheck, Phase, note, settings
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, precondition, rule
@@ -36,6 +37,7 @@ from mintpilot.core.inputs import (
     QuestionShown,
     Ticked,
 )
+from mintpilot.core.message import NOTHING, verbatim
 from mintpilot.core.mission import Outcome
 from mintpilot.core.motion import FollowTrajectory, Land, Motion, MotionEnd
 from mintpilot.core.observation import RegionKind
@@ -270,7 +272,7 @@ class Mission(RuleBasedStateMachine):
             self.clouds += 1
             cloud = Region(id=f"new-{self.clouds}", kind=RegionKind.SMOKE, cells=cells)
             self.map = replace(self.map, regions=(*self.map.regions, cloud))
-            obstruction = data.draw(st.sampled_from(["", "a cloud"]))
+            obstruction = data.draw(st.sampled_from([NOTHING, verbatim("a cloud")]))
             self.feed(MapObserved(time_s=self.time_s, map=self.believed(), obstruction=obstruction))
 
     @precondition(lambda self: self.state.beliefs is not None and not self.calm)
@@ -284,7 +286,7 @@ class Mission(RuleBasedStateMachine):
                 cells = grown(cells, self.map.cells.shape)
             regions[i] = replace(region, cells=cells)
         self.map = replace(self.map, regions=tuple(regions))
-        self.feed(MapObserved(time_s=self.time_s, map=self.believed(), obstruction="a cloud has grown"))
+        self.feed(MapObserved(time_s=self.time_s, map=self.believed(), obstruction=verbatim("a cloud has grown")))
 
     @precondition(lambda self: bool(self.allowed) and not self.ended)
     @rule()
@@ -517,3 +519,6 @@ class TestMissionLaws(Mission.TestCase):
         super().runTest()
         assert OUTCOMES[Outcome.SUCCESS] >= 1, OUTCOMES
         assert OUTCOMES.total() > OUTCOMES[Outcome.SUCCESS], OUTCOMES
+
+
+TestMissionLaws.pytestmark = [pytest.mark.long]  # type: ignore[attr-defined]

@@ -201,6 +201,7 @@ HOME_IN_A_REGION = random_problem((1, 6, 6), 2, 0, 2, 14337)
 ONLY_WAY_HOME_IN_TIME_IS_OPEN = random_problem((1, 6, 6), 3, 1, 1, 407517)
 
 
+@pytest.mark.long
 @settings(deadline=None, max_examples=50)
 @given(problem=problems, seed=st.integers(0, 1000))
 @example(problem=HOME_IN_A_REGION, seed=0)
@@ -257,6 +258,7 @@ def check_relies_on(problem: PlanningProblem, plan: Plan, left: list[dict[str, s
         assert len({h[gap] for h in left}) > 1
 
 
+@pytest.mark.long
 @settings(deadline=None, max_examples=20)
 @given(problem=problems, seed=st.integers(0, 1000))
 def test_the_order_of_gaps_and_values_never_matters(problem: PlanningProblem, seed: int) -> None:
@@ -307,6 +309,7 @@ def dijkstra_path(free: np.ndarray, start: tuple, goal: tuple):
     return float(table[source, target]), np.array(cells)
 
 
+@pytest.mark.long
 @settings(deadline=None, max_examples=10)
 @given(problem=problems)
 def test_a_black_box_planner_agrees(problem: PlanningProblem) -> None:

@@ -111,6 +111,7 @@ def test_gain_is_the_fall_of_the_class_entropy(world: World) -> None:
         assert scored.gain_bits == pytest.approx(class_entropy_bits(mint) - left, abs=1e-9)
 
 
+@pytest.mark.long
 @few
 @given(worlds, st.sampled_from([0.0, 0.5, 2.0]))
 def test_every_leaf_plan_succeeds_and_is_within_delta_of_the_best(world: World, delta_s: float) -> None:
@@ -133,6 +134,7 @@ def test_every_leaf_plan_succeeds_and_is_within_delta_of_the_best(world: World, 
                 assert leaf.plan.cost_s <= best + delta_s + 1e-9
 
 
+@pytest.mark.long
 @few
 @given(worlds)
 def test_leaves_and_classes_hold_all_the_mass_and_answers_never_add_a_leaf(world: World) -> None:
@@ -163,6 +165,7 @@ def test_the_tree_finds_the_cost_of_every_joint_hypothesis(world: World) -> None
             assert (plan.cost_s if plan else math.inf) == pytest.approx(space.cost_under(truth))
 
 
+@pytest.mark.long
 @very_few
 @given(worlds, st.sampled_from(["information-gain", "ec2"]))
 def test_with_true_answers_and_no_tolerance_the_flight_is_the_omniscient_one(world: World, objective: str) -> None:
@@ -190,6 +193,7 @@ def test_any_order_of_questions_flies_within_delta_and_only_through_confirmed_re
             assert game.fly.plan.enters <= game.situation.confirmed
 
 
+@pytest.mark.long
 @very_few
 @given(obstacle_worlds)
 def test_good_objectives_are_near_the_optimum_and_never_ask_more_than_all(world: World) -> None:
@@ -234,6 +238,7 @@ def test_a_larger_delta_never_raises_the_expected_questions_of_optimal(world: Wo
     assert loose <= tight + 1e-9
 
 
+@pytest.mark.long
 @few
 @given(worlds, st.randoms(use_true_random=False))
 def test_the_order_of_gaps_does_not_change_the_question(world: World, shuffler: object) -> None:
@@ -248,6 +253,7 @@ def test_the_order_of_gaps_does_not_change_the_question(world: World, shuffler: 
         assert one.alternatives == other.alternatives
 
 
+@pytest.mark.long
 @few
 @given(worlds, st.integers(0, 9))
 def test_same_seed_same_game(world: World, seed: int) -> None:
@@ -269,6 +275,7 @@ def test_planner_calls_are_bounded_by_the_nodes(world: World, bound: int) -> Non
             assert leaf.plan is leaf.cautious
 
 
+@pytest.mark.long
 @few
 @given(worlds, st.integers(0, 3), st.lists(st.sampled_from(REPLIES), max_size=30), st.sampled_from([0.0, 0.1]))
 def test_whatever_is_answered_nothing_unknown_is_entered_and_the_budget_holds(

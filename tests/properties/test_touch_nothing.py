@@ -39,6 +39,7 @@ def random_world(seed: int, cell_m: float, *, tall: bool = False) -> tuple[Seman
     return SemanticMap(frame=frame, cells=cells, regions=(region,)), barred
 
 
+@pytest.mark.long
 @settings(deadline=None, max_examples=60)
 @given(seed=seeds, cell_m=cells_m, body_m=bodies_m, tall=st.booleans())
 def test_the_check_agrees_with_dense_sampling(seed: int, cell_m: float, body_m: float, tall: bool) -> None:
@@ -50,12 +51,13 @@ def test_the_check_agrees_with_dense_sampling(seed: int, cell_m: float, body_m: 
     path[1] = path[0] + (path[1] - path[0]) * rng.choice([0.0, 0.1, 1.0])
     spacing = float(np.linalg.norm(path[1] - path[0])) / 400 + 1e-9
     gaps = distances(densely(path, spacing), barred, map.frame.origin_m, cell_m, body_m + cell_m)
-    refused = check_path(path, map, VehicleLimits(radius_m=body_m / 2, margin_m=body_m / 2)) != ""
+    refused = check_path(path, map, VehicleLimits(radius_m=body_m / 2, margin_m=body_m / 2))
     if gaps[0] >= body_m:  # what begins too near may leave, which is tested elsewhere
         assert not refused or gaps.min() <= body_m + spacing
         assert refused or gaps.min() >= body_m - 1e-6
 
 
+@pytest.mark.long
 @settings(deadline=None, max_examples=50)
 @given(seed=seeds, cell_m=cells_m, body_m=bodies_m, tall=st.booleans())
 def test_every_path_of_the_search_and_its_trajectory_keep_the_clearance(
@@ -73,7 +75,7 @@ def test_every_path_of_the_search_and_its_trajectory_keep_the_clearance(
         path = map.frame.centres_of(shortest_path(known_flyable(map, limits), start, goal)[1])
     except InfeasibleError:
         return
-    assert check_path(path, map, limits) == ""
+    assert not check_path(path, map, limits)
     trajectory = plan_trajectory(path, map=map, limits=limits)
     for way in (path, trajectory.position_m):
         gaps = distances(densely(way, max(cell_m / 4, 0.02)), barred, map.frame.origin_m, cell_m, body_m + 0.01)
@@ -91,7 +93,7 @@ def two_walls() -> SemanticMap:
 def test_nothing_flies_between_two_walls_that_touch_at_a_corner(body_m: float) -> None:
     limits = VehicleLimits(radius_m=body_m, margin_m=0.0)
     through = np.array([[1.5, 0.5, 1.0], [2.5, 1.5, 1.0]])
-    assert "which is occupied" in check_path(through, two_walls(), limits)
+    assert "which is occupied" in str(check_path(through, two_walls(), limits))
     with pytest.raises(InfeasibleError, match="cannot be flown"):
         plan_trajectory(through, map=two_walls(), limits=limits)
 
@@ -101,10 +103,11 @@ def test_position_uncertainty_adds_three_sigma() -> None:
     cells[0, :10] = Cell.OCCUPIED
     map = SemanticMap(frame=GridFrame(origin_m=(0, 0, 0.9), resolution_m=0.1, shape=cells.shape), cells=cells)
     beside = np.array([[1.0, 1.5, 1.0], [3.0, 1.5, 1.0]])
-    assert check_path(beside, map, VehicleLimits(radius_m=0.3, margin_m=0.1, position_sigma_m=0.03)) == ""
-    assert "0.52 m" in check_path(beside, map, VehicleLimits(radius_m=0.3, margin_m=0.1, position_sigma_m=0.04))
+    assert not check_path(beside, map, VehicleLimits(radius_m=0.3, margin_m=0.1, position_sigma_m=0.03))
+    assert "0.52 m" in str(check_path(beside, map, VehicleLimits(radius_m=0.3, margin_m=0.1, position_sigma_m=0.04)))
 
 
+@pytest.mark.long
 @settings(deadline=None, max_examples=5)
 @given(seed=st.integers(0, 10**6))
 def test_whole_missions_stay_away_from_all_that_is_not_known_free(seed: int) -> None:

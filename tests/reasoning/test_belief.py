@@ -50,6 +50,7 @@ def brute(priors: list[float], answers: list[tuple[Query, bool]], error: float) 
     return {name: m / total for name, m in mass.items()}
 
 
+@pytest.mark.long
 @settings(max_examples=60, deadline=None)
 @given(
     st.lists(st.floats(0.05, 0.95), min_size=3, max_size=5),

@@ -40,12 +40,14 @@ def frechet(a: np.ndarray, b: np.ndarray) -> float:
     return reach(len(a) - 1, len(b) - 1)
 
 
+@pytest.mark.long
 @settings(max_examples=10, deadline=None)
 @given(paths, paths)
 def test_frechet_is_the_textbook_one(a: np.ndarray, b: np.ndarray) -> None:
     assert FrechetMetric().divergence(a, b) == pytest.approx(frechet(resample(a), resample(b)))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", names("metric"))
 @settings(max_examples=15, deadline=None)
 @given(a=paths, b=paths)

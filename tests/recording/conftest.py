@@ -11,6 +11,7 @@ import pytest
 from mintpilot.core import events as ev
 from mintpilot.core.gap import BLOCKED, PASSABLE, Assumptions, Candidate, GapKind, Joint, KnowledgeGap
 from mintpilot.core.geometry import Box, GridFrame
+from mintpilot.core.message import verbatim
 from mintpilot.core.mission import Mission, Outcome, Verdict
 from mintpilot.core.observation import Attribute, CameraModel, Detection, Frame, RegionKind
 from mintpilot.core.plan import Leg, Plan, Site, Stop
@@ -135,15 +136,16 @@ def tell(*, label: str = "box", description: str = "the grey smoke near the gate
     chosen = direct if reply is Reply.YES else around
     certificate = Certificate(
         reason=StopReason.ONE_CLASS, top_class_probability=1.0, entropy_bits=0.0, best_gain_bits=0.0,
-        bound_s=0.0 if reply in (Reply.YES, Reply.NO) else float("inf"), text="One way to fly holds 100 % of the mass.",
+        bound_s=0.0 if reply in (Reply.YES, Reply.NO) else float("inf"),
+        text=verbatim("One way to fly holds 100 % of the mass."),
     )  # fmt: skip
     explanations = (
         GapExplanation(gap_id=SMOKE, description=description, kind="obstacle", asked=True, relevant=True,
-                   why="Flying around costs 14.9 s more than 2.0 s, and the paths are 6.5 m apart.",
+                   why=verbatim("Flying around costs 14.9 s more than 2.0 s, and the paths are 6.5 m apart."),
                    cost_if_favourable_s=direct.cost_s, cost_if_unfavourable_s=around.cost_s, divergence_m=6.5,
                    entropy_bits=1.0, gain_bits=1.0, regret_saved_s=5.9),
         GapExplanation(gap_id="target:1", description="the medicine box", kind="target", asked=False, relevant=False,
-                   why="Its entropy of 0.57 bit does not change the way by more than 0.4 s.",
+                   why=verbatim("Its entropy of 0.57 bit does not change the way by more than 0.4 s."),
                    cost_if_favourable_s=direct.cost_s, cost_if_unfavourable_s=float("inf"), entropy_bits=0.57),
     )  # fmt: skip
     trajectory, log = flight(chosen)
@@ -175,10 +177,12 @@ def tell(*, label: str = "box", description: str = "the grey smoke near the gate
                        certificate=certificate, seconds=0.03),
         ev.Timed(stage="deliberation", seconds=0.03),
         ev.PlanChosen(plan=chosen, certificate=certificate, explanations=explanations),
-        ev.Noticed(kind="new-object", text=f"Something new was seen in flight: {label}."),
+        ev.Noticed(kind="new-object", text=verbatim(f"Something new was seen in flight: {label}.")),
         ev.LegFlown(phase="mission", stop_id="goal-1", trajectory=trajectory, log=log),
         ev.Timed(stage="flight", seconds=1.1),
     ]  # fmt: skip
     if ended:
-        story.append(ev.MissionEnded(verdict=Verdict(outcome=Outcome.SUCCESS, reason="Every goal was reached.")))
+        story.append(
+            ev.MissionEnded(verdict=Verdict(outcome=Outcome.SUCCESS, reason=verbatim("Every goal was reached.")))
+        )
     return tuple(story)

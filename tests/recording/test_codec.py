@@ -84,6 +84,7 @@ def there_and_back(value: Any, hint: Any) -> Any:
     return decode(hint, json.loads(text))
 
 
+@pytest.mark.long
 @settings(max_examples=10, suppress_health_check=SLOW, deadline=None)
 @given(st.data())
 @pytest.mark.parametrize("cls", typing.get_args(Event), ids=lambda c: c.__name__)
@@ -95,6 +96,7 @@ def test_every_event_comes_back_to_the_last_bit(cls, data):
     assert differences(event, there_and_back(event, Event)) == []
 
 
+@pytest.mark.long
 @settings(max_examples=10, suppress_health_check=SLOW, deadline=None)
 @given(st.data())
 @pytest.mark.parametrize("cls", [Every, SemanticMap, Plan, Belief, Mint], ids=lambda c: c.__name__)
@@ -103,6 +105,7 @@ def test_nested_values_come_back(cls, data):
     assert differences(value, there_and_back(value, cls)) == []
 
 
+@pytest.mark.long
 @given(any_array())
 def test_arrays_come_back(array):
     assert differences(array, there_and_back(array, Floats)) == []
@@ -240,6 +243,7 @@ def test_what_has_no_exact_form_is_refused_when_it_is_written(value, hint, messa
         encode(value, hint)
 
 
+@pytest.mark.long
 @settings(max_examples=100, suppress_health_check=SLOW, deadline=None)
 @given(st.data())
 def test_changed_documents_are_refused_or_read_never_anything_else(make_events_once, data):

@@ -68,6 +68,7 @@ def size(tree: TreeRecord) -> int:
     return 1 + tree.left_out + sum(map(size, tree.children))
 
 
+@pytest.mark.long
 def test_the_report_is_well_formed_and_needs_no_network(tmp_path, make_events):
     with RunFolder(tmp_path) as folder:
         for event in make_events():
@@ -84,6 +85,7 @@ def test_the_report_is_well_formed_and_needs_no_network(tmp_path, make_events):
     assert report_html(folder.close(), tmp_path) == text, "made of the run folder alone"
 
 
+@pytest.mark.long
 def test_hostile_words_stay_words(tmp_path, make_events):
     told = make_events(label=HOSTILE, description=HOSTILE, words=HOSTILE)
     with RunFolder(tmp_path) as folder:
@@ -162,6 +164,7 @@ def test_dot_strings_are_closed(make_events):
     assert without_strings.count("{") == without_strings.count("}") == 1
 
 
+@pytest.mark.long
 def test_the_plot_is_the_same_for_the_same_mission(tmp_path, make_events):
     for name in ("a.svg", "b.svg"):
         history = History()

@@ -61,7 +61,7 @@ def chained(*lines: dict[str, Any]) -> bytes:
     return out
 
 
-HEADER = {"format": "mintpilot-events", "schema_version": 4, "program": "9.9", "at_s": 0.0}
+HEADER = {"format": "mintpilot-events", "schema_version": 5, "program": "9.9", "at_s": 0.0}
 
 
 def seen(event: Any) -> Any:
@@ -169,6 +169,7 @@ while True:
 """
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seed", range(3))
 def test_a_killed_writer_leaves_every_event_that_it_had_written(tmp_path, seed):
     code = CHILD.format(here=str(Path(__file__).parent), path=str(tmp_path / "log"))
@@ -188,6 +189,7 @@ def test_a_killed_writer_leaves_every_event_that_it_had_written(tmp_path, seed):
     assert (tmp_path / "log").read_bytes().count(b"\n") - 1 == sum(1 for _ in log)
 
 
+@pytest.mark.long
 @TORTURE
 @given(st.data())
 def test_a_torn_tail_is_readable_up_to_the_cut_and_said(tmp_path, told, data):
@@ -210,6 +212,7 @@ def damaged(lines: list[bytes], kind: str, at: int) -> list[bytes]:
     return [*lines[:at], lines[at + 1], lines[at], *lines[at + 2 :]]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("kind", ["edited", "removed", "doubled", "swapped"])
 def test_changed_lines_are_found_and_named(tmp_path, told, kind):
     lines = told.splitlines(keepends=True)
@@ -239,8 +242,8 @@ def test_an_edited_first_line_and_a_line_after_the_end_are_found(tmp_path, told)
         (b"", "holds no event"),
         (b'{"event":"MissionStarted","number":0,"at_s":1.0}\n', "older version: readable as a report, not replayable"),
         (
-            chained({**HEADER, "schema_version": 5}),
-            r"schema version 5, this program reads 4; read it with MintPilot '9\.9'",
+            chained({**HEADER, "schema_version": 6}),
+            r"schema version 6, this program reads 5; read it with MintPilot '9\.9'",
         ),
         (b"\xff\xfe nonsense\n", "is not an event log of MintPilot"),
         (b'{"format":"other"}\n', "is not an event log"),
@@ -307,6 +310,7 @@ def test_any_bytes_are_refused(tmp_path, content):
         list(read_event_log(tmp_path / "log"))
 
 
+@pytest.mark.long
 @TORTURE
 @given(st.data())
 def test_changed_bytes_never_raise_anything_else_nor_give_other_events(tmp_path, told, data):
@@ -321,6 +325,7 @@ def test_changed_bytes_never_raise_anything_else_nor_give_other_events(tmp_path,
             assert differences(seen(event), logged.event) == []
 
 
+@pytest.mark.long
 @TORTURE
 @given(st.data())
 def test_forged_lines_never_raise_anything_else(tmp_path, told, data):

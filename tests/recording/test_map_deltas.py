@@ -31,6 +31,7 @@ def copied(document):
     return json.loads(json.dumps(document))
 
 
+@pytest.mark.long
 @settings(max_examples=40, deadline=None, suppress_health_check=list(HealthCheck))
 @given(st.lists(maps(FRAME) | maps(), min_size=1, max_size=3), st.data())
 def test_every_map_of_a_row_comes_back_to_the_last_bit(row, data):

@@ -35,6 +35,7 @@ def asked(events: list[Event]) -> Question:
     return next(e.question for e in events if isinstance(e, Asked) and e.question.gaps[0].kind is not GapKind.GO)
 
 
+@pytest.mark.long
 def test_the_figures_behind_a_question_are_told(flown):
     notes, events = flown
     said = notes.why(asked(events))
@@ -50,6 +51,7 @@ def test_the_map_is_written(flown):
         assert len(np.unique(np.asarray(picture.convert("L")))) > 10
 
 
+@pytest.mark.long
 def test_a_picture_of_the_thing_is_written_with_its_outline(flown):
     notes, events = flown
     question = asked(events)

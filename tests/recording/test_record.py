@@ -202,7 +202,7 @@ def test_what_a_language_model_did_is_in_the_record_and_in_the_report(make_event
     assert MissionRecord.model_validate_json(record.model_dump_json()) == record
     report = " ".join(report_html(record, tmp_path).split())
     assert "Is the &lt;b&gt;smoke&lt;/b&gt; safe?" in report
-    for words in ("Shown first as", "these words came from tiny", "The answer also said", "proposed to ask"):
+    for words in ("Shown first as", "these words came from tiny", "also said: ", "proposed to ask"):
         assert words in report
     printed = io.StringIO()
     print_report(record, Console(file=printed, width=100))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import json
 import os
 import resource
@@ -15,6 +16,7 @@ from pathlib import Path
 
 import pytest
 from PIL import Image
+from rich.console import Console
 
 from mintpilot.core.errors import RecordError
 from mintpilot.core.events import Deliberated, LegFlown, MapUpdated, PlanChosen
@@ -23,6 +25,7 @@ from mintpilot.recording.event_log import read_event_log
 from mintpilot.recording.record import read_record
 from mintpilot.recording.recorders import MemoryRecorder, NullRecorder, TeeRecorder
 from mintpilot.recording.run_folder import RunFolder, new_run_path
+from mintpilot.recording.terminal_report import print_report
 
 HERE = Path(__file__).parent
 CHILD = """
@@ -45,6 +48,7 @@ def child(path: Path, *, before: str = "", after: str = "", end: str = "") -> su
     return subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE)
 
 
+@pytest.mark.long
 def test_a_finished_mission_leaves_everything(tmp_path, make_events):
     with RunFolder(tmp_path / "run", clock=lambda: 1000.0) as folder:
         for event in make_events():
@@ -74,6 +78,7 @@ FOLLOWS_FROM_STEPS = (MapUpdated, Deliberated, PlanChosen, LegFlown)
 """The steps hold the same: it is not written a second time."""
 
 
+@pytest.mark.long
 def test_events_are_on_disk_as_they_happen(tmp_path, make_events):
     folder = RunFolder(tmp_path)
     count = 0
@@ -89,6 +94,7 @@ def test_events_are_on_disk_as_they_happen(tmp_path, make_events):
     folder.close()
 
 
+@pytest.mark.long
 def test_a_killed_program_loses_no_event(tmp_path, make_events):
     process = child(tmp_path / "run", end="print('told', flush=True)\nsignal.pause()")
     assert process.stdout is not None
@@ -104,6 +110,7 @@ def test_a_killed_program_loses_no_event(tmp_path, make_events):
     assert list((tmp_path / "run" / "frames").glob("*.jpg"))
 
 
+@pytest.mark.long
 def test_a_record_is_there_while_the_mission_runs(tmp_path, make_events):
     folder = RunFolder(tmp_path)
     for event in make_events()[:-1]:
@@ -115,6 +122,7 @@ def test_a_record_is_there_while_the_mission_runs(tmp_path, make_events):
     folder.close()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("error", "reason"),
     [(KeyboardInterrupt(), "Ctrl-C"), (RuntimeError("motor 3 stands still"), "motor 3 stands still")],
@@ -135,6 +143,7 @@ def test_a_folder_closed_before_anything_happened_is_readable(tmp_path):
     assert RunFolder(tmp_path).close() == read_record(tmp_path)
 
 
+@pytest.mark.long
 def test_a_full_disk_is_noted_and_the_mission_goes_on(tmp_path):
     """A real limit of the operating system on the size of files: writing beyond it fails half-way through a line."""
     limit = "signal.signal(signal.SIGXFSZ, signal.SIG_IGN)\nresource.setrlimit(resource.RLIMIT_FSIZE, (6000, {hard}))"
@@ -155,6 +164,25 @@ def test_a_full_disk_is_noted_and_the_mission_goes_on(tmp_path):
     assert "could not be written" in notices["record-incomplete"]
 
 
+def test_what_the_disk_does_not_take_whole_is_not_there_at_all(tmp_path):
+    """The limit comes back before the drawings: neither half a report nor an empty one is left, and none is named."""
+    hard = resource.getrlimit(resource.RLIMIT_FSIZE)[1]
+    full = f"signal.signal(signal.SIGXFSZ, signal.SIG_IGN)\nresource.setrlimit(resource.RLIMIT_FSIZE, (30000, {hard}))"
+    process = child(tmp_path / "run", end=f"{full}\nfolder.close()")
+    assert process.communicate(timeout=60)[0] == b""
+    record = read_record(tmp_path / "run")
+    (lost,) = [n.text for n in record.notices if n.kind == "record-incomplete"]
+    assert "report.html (File too large)" in lost
+    left = {p.name for p in (tmp_path / "run").iterdir()}
+    assert "report.html" not in left
+    assert "tree.txt" in left
+    assert all(p.stat().st_size for p in (tmp_path / "run").iterdir() if p.is_file())
+    told = io.StringIO()
+    print_report(record, Console(width=100, file=told))
+    assert "What it flew" in told.getvalue()
+    assert "Report:" not in told.getvalue()
+
+
 def test_a_folder_that_cannot_be_written_is_refused_before_the_mission(tmp_path):
     file = tmp_path / "file"
     file.write_text("x")
@@ -173,6 +201,7 @@ def test_the_given_configuration_is_kept(tmp_path):
     assert json.loads((tmp_path / "config.json").read_text()) == {"mintpilot": 1, "seed": 3}
 
 
+@pytest.mark.long
 def test_pictures_are_bounded_and_those_that_prove_something_stay(tmp_path, make_events):
     told = make_events()
     frame = next(e for e in told if type(e).__name__ == "FrameSeen")

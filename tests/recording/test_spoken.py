@@ -11,14 +11,15 @@ from mintpilot.core.mission import Outcome, Sight
 from mintpilot.recording.people import look_line
 from mintpilot.recording.record import LookRecord
 from mintpilot.recording.report import report_html
-from mintpilot.recording.spoken import outcome_words
+from mintpilot.recording.words import OUTCOME_WORDS
+from mintpilot.wording.speech import Speech
 
 LANGUAGES = ("en", "de", "fr", "es")
 
 
 @pytest.mark.parametrize("outcome", list(Outcome))
 def test_every_ending_has_words_of_its_own_in_every_language(outcome):
-    assert len({outcome_words(outcome, lang) for lang in LANGUAGES}) == len(LANGUAGES)
+    assert len({Speech(lang)(OUTCOME_WORDS[outcome]) for lang in LANGUAGES}) == len(LANGUAGES)
 
 
 @pytest.mark.parametrize("result", list(Sight))
@@ -27,6 +28,7 @@ def test_every_result_of_a_look_too(result):
     assert len({look_line(look, lang) for lang in LANGUAGES}) == len(LANGUAGES)
 
 
+@pytest.mark.long
 def test_things_are_called_as_the_file_says_and_the_record_replays_exactly(tmp_path):
     path = written(tmp_path, "Go to the lamp.", truth={"haze": "passable"})
     text = path.read_text()
@@ -39,5 +41,5 @@ def test_things_are_called_as_the_file_says_and_the_record_replays_exactly(tmp_p
     assert record.language == "de"
     html = report_html(record, tmp_path / "run")
     assert re.search(r"<html lang=\"de\">", html)
-    assert outcome_words(record.outcome, "de") in html
+    assert Speech("de")(OUTCOME_WORDS[record.outcome]) in html
     assert verify_run(tmp_path / "run").verification.difference is None

@@ -37,6 +37,7 @@ def _moments(names):
     return [frozenset(x) for n in range(len(names) + 1) for x in itertools.combinations(names, n)]
 
 
+@pytest.mark.long
 @settings(deadline=None)
 @given(seeds)
 def test_every_short_trace_is_judged_by_the_definition(seed):
@@ -114,6 +115,7 @@ def test_standing_still_changes_nothing(seed, trace, stay):
     assert _accepts(automaton, trace) == _accepts(automaton, [*trace[: i + 1], *trace[i:]])
 
 
+@pytest.mark.long
 @settings(deadline=None)
 @given(seeds, seeds, st.lists(st.sets(st.sampled_from(NAMES)).map(frozenset), min_size=1, max_size=5))
 def test_rules_together_are_all_of_them(one, other, trace):
@@ -122,6 +124,7 @@ def test_rules_together_are_all_of_them(one, other, trace):
     assert _accepts(both, trace) == all(ltlf.holds(f, trace) for f in formulas)
 
 
+@pytest.mark.long
 @settings(deadline=None)
 @given(seeds, st.lists(st.sets(st.sampled_from(NAMES)).map(frozenset), min_size=1, max_size=5))
 def test_a_formula_or_its_negation_holds(seed, trace):
@@ -152,6 +155,7 @@ def test_what_is_not_known_may_change_at_any_moment(seed, sure, doubtful, length
         assert state in reached
 
 
+@pytest.mark.long
 def test_an_automaton_of_thirty_states_is_made_and_one_beyond_the_bound_refused():
     names = [f"s{i}" for i in range(5)]
     five = compile_formula(parse(" & ".join(f"F at({n})" for n in names)))

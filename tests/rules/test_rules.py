@@ -98,6 +98,7 @@ def _rules(seed, count):
     return [Rule(text=f"{i}", formula=ltlf.text(ltlf.drawn(rng, "ab", 2))) for i in range(count)]
 
 
+@pytest.mark.long
 @settings(deadline=None)
 @given(st.integers(0, 10**6), st.integers(1, 5))
 def test_conflicting_rules_cannot_be_kept_and_none_of_them_can_be_left_out(seed, count):

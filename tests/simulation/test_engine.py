@@ -24,6 +24,7 @@ sys.exit(main(["demo", "medicine", "--headless", "--out", sys.argv[1]]))
 """
 
 
+@pytest.mark.long
 @pytest.mark.sim
 def test_a_missing_egl_is_told_with_the_line_that_installs_it(tmp_path):
     pytest.importorskip("mujoco")

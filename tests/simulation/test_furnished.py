@@ -16,6 +16,7 @@ from mintpilot.simulation.furnished.styles import FRESH, HELD_BACK, STYLES, TUNE
 SEEDS = range(10)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("style", FRESH.values(), ids=FRESH)
 def test_rooms_can_be_drawn_and_all_in_them_is_within_their_walls(style: Style) -> None:
     mujoco: Any = pytest.importorskip("mujoco")

@@ -57,6 +57,7 @@ def test_a_wall_in_the_way_is_a_collision_and_ends_it() -> None:
     assert vehicle.state().position_m == here
 
 
+@pytest.mark.long
 @settings(deadline=None, max_examples=200)
 @given(
     shape=st.sampled_from(Shape),

@@ -47,6 +47,7 @@ def faults(stage):
     return UsdValidation.ValidationContext(validators).Validate(stage)
 
 
+@pytest.mark.long
 def test_every_validator_passes(written):
     from pxr import Usd
 
@@ -64,6 +65,7 @@ def test_the_validators_do_find_faults(written):
     assert faults(stage)
 
 
+@pytest.mark.long
 def test_it_holds_what_mujoco_holds(written):
     from pxr import Gf, Usd, UsdGeom, UsdPhysics
 
@@ -118,6 +120,7 @@ def test_the_command_writes_it(tmp_path, capsys):
     assert ".usda" in capsys.readouterr().err
 
 
+@pytest.mark.long
 def test_a_place_that_cannot_be_written_is_told(written, tmp_path):
     with pytest.raises(RecordError, match="choose another file"):
         write_usd(written[0].scene, tmp_path / "no" / "folder" / "\0.usda")

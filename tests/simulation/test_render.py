@@ -87,6 +87,7 @@ def test_points_back_projected_with_the_frames_pose_lie_on_the_wall(wall_frame: 
     assert np.linalg.det(turn) == pytest.approx(1.0)
 
 
+@pytest.mark.long
 def test_nothing_returns_from_beyond_the_range_and_noise_grows_with_distance() -> None:
     far = View(hall()).frame().depth_m
     assert np.isnan(centre(far)).all()
@@ -96,6 +97,7 @@ def test_nothing_returns_from_beyond_the_range_and_noise_grows_with_distance() -
     assert np.nanstd(middle) > 2 * np.nanstd(near)
 
 
+@pytest.mark.long
 def test_the_same_seed_gives_the_same_frames_and_another_other_noise() -> None:
     first, again, other = (View(hall(WALL), seed=s).frame() for s in (0, 0, 1))
     assert np.array_equal(first.depth_m, again.depth_m, equal_nan=True)
@@ -107,6 +109,7 @@ def cloud(long_m: float) -> Smoke:
     return Smoke(id="smoke", extent_m=Box(lo_m=(3.0, 2.0, 0.0), hi_m=(3.0 + long_m, 6.0, 4.0)), toxic=True)
 
 
+@pytest.mark.long
 def test_smoke_hides_more_and_returns_nearer_the_thicker_it_is() -> None:
     bricks = Solid(id="bricks", kind="partition", extent_m=WALL.extent_m)
     contrast, depth = [], []
@@ -120,6 +123,7 @@ def test_smoke_hides_more_and_returns_nearer_the_thicker_it_is() -> None:
     assert 2.0 < depth[3] < 3.3
 
 
+@pytest.mark.long
 def test_smoke_looks_the_same_whether_toxic_or_not() -> None:
     toxic = cloud(2.0)
     safe = Smoke(id="smoke", extent_m=toxic.extent_m, toxic=False)
@@ -128,6 +132,7 @@ def test_smoke_looks_the_same_whether_toxic_or_not() -> None:
     assert np.array_equal(a.depth_m, b.depth_m, equal_nan=True)
 
 
+@pytest.mark.long
 def test_fire_is_bright_orange_and_returns_from_its_flames() -> None:
     fire = Solid(id="fire", kind="fire", extent_m=Box(lo_m=(3.4, 3.4, 0.0), hi_m=(4.6, 4.6, 1.5)))
     frame = View(hall(WALL, fire), eye_m=(1.0, 4.0, 0.8)).frame(2.0)

@@ -64,6 +64,7 @@ def test_same_seed_same_world(name: str) -> None:
     assert first.scene != other.scene
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seed", SEEDS)
 def test_the_omniscient_flight_exists_and_so_does_one_round_the_smoke(seed: int) -> None:
     scenario = make_scenario("fire-warehouse", seed)
@@ -127,6 +128,7 @@ def way_length_m(world: SemanticMap, start: Vec3, goal: Vec3, *, closed: bool) -
     return float(dijkstra(graph, directed=False, indices=source)[target])
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("on_way", "kind"), [(1.0, "on-way"), (0.0, "off-way")])
 def test_smoke_on_the_way_lengthens_it_and_smoke_off_the_way_does_not(on_way: float, kind: str) -> None:
     longer = []
@@ -147,6 +149,7 @@ def test_smoke_on_the_way_lengthens_it_and_smoke_off_the_way_does_not(on_way: fl
         assert max(longer) < 0.1
 
 
+@pytest.mark.long
 def test_truths_follow_the_priors_and_move_nothing() -> None:
     safe = make_scenario("fire-warehouse", 3, prior_toxic=0.0, prior_occupied=0.0)
     bad = make_scenario("fire-warehouse", 3, prior_toxic=1.0, prior_occupied=1.0)
@@ -184,6 +187,7 @@ def look(solid: Solid) -> tuple[str, float, Shape]:
     return (solid.colour, round(max(solid.extent_m.size_m), 3), solid.shape)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seed", SEEDS)
 def test_boxes_stand_free_and_differ_in_combination_only(seed: int) -> None:
     scenario = make_scenario("medicine-boxes", seed)

@@ -21,6 +21,7 @@ from oracles.worlds import BruteForce, World, hypotheses, random_world
 EXACT = AskingSettings(delta_c_s=0.0, alpha=0.0, floor=0.0, goal_entropy_bits=0.0, max_questions=60)
 
 
+@pytest.mark.long
 @settings(max_examples=40, deadline=None)
 @given(seed=st.integers(0, 100_000), regions=st.integers(1, 4), delta=st.sampled_from([0.0, 1.0, 2.0, 4.0]))
 def test_what_is_flown_is_within_delta_of_the_best_under_each_hypothesis_left(

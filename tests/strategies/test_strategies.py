@@ -165,6 +165,7 @@ def test_with_wrong_answers_a_short_budget_is_not_begun() -> None:
     assert fly.certificate.reason is StopReason.BUDGET
 
 
+@pytest.mark.long
 def test_exhaustive_asks_about_everything_and_mint_about_less() -> None:
     world = gate(goals=2, rooms=1)
     world.regions["aside"] = frozenset({(0, 0)})
@@ -178,6 +179,7 @@ def test_exhaustive_asks_about_everything_and_mint_about_less() -> None:
             assert game.fly.plan.cost_s <= space.cost_under(truth) + EXACT.delta_c_s + 1e-9
 
 
+@pytest.mark.long
 def test_gap_by_gap_misses_what_interacts() -> None:
     # Two gates one after the other beside a long way around: each alone is critical only while the other is open.
     worse = 0.0
@@ -207,6 +209,7 @@ def test_passive_methods_do_what_the_paper_says() -> None:
         assert fly.plan.skips == {"room0"}
 
 
+@pytest.mark.long
 def test_the_passive_mixture_is_seeded() -> None:
     situation = open_situation(gate(goals=2, rooms=1), EXACT)
     flown = [PassiveMixtureStrategy(seed).decide(situation) for seed in range(40)]
@@ -217,6 +220,7 @@ def test_the_passive_mixture_is_seeded() -> None:
     assert {f.plan.skips for f in flown} == {frozenset(), frozenset({"room0"})}
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("kind", ALL)
 def test_every_method_ends_and_marks_what_is_not_safe(kind: type[Strategy]) -> None:
     for seed in range(4):

@@ -89,6 +89,7 @@ def omniscient_s(edge_m: float, detour: bool = True) -> float | None:
     return None if plan is None else plan.cost_s
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("kinds", list(QueryKinds))
 @pytest.mark.parametrize("edge_m", TRUTHS_M)
 def test_it_flies_as_the_omniscient_planner_does_and_only_where_a_yes_says_so(edge_m: float, kinds: QueryKinds) -> None:

@@ -101,7 +101,9 @@ def test_nothing_that_matches_is_told_with_what_was_seen() -> None:
     findings = find_gaps(world([RED, BLUE, PERSON]), task, start_m=START_M)
     assert findings.stops == ()
     (problem,) = findings.problems
-    assert problem == ("Nothing on the map matches 'the green box'. Seen was the large blue box, the small red box.")
+    assert str(problem) == (
+        "Nothing on the map matches 'the green box'. Seen was the large blue box, the small red box."
+    )
     with pytest.raises(InputError, match="the green box"):
         frame_problem(world([RED]), task, findings, start_m=START_M, limits=VehicleLimits())
 
@@ -109,7 +111,7 @@ def test_nothing_that_matches_is_told_with_what_was_seen() -> None:
 def test_an_empty_map_says_that_nothing_was_seen() -> None:
     findings = find_gaps(world(), MEDICINE, start_m=START_M)
     assert len(findings.problems) == 2
-    assert all("Seen was nothing." in text for text in findings.problems)
+    assert all("Seen was nothing." in str(text) for text in findings.problems)
 
 
 def test_an_open_region_is_an_obstacle_gap() -> None:
@@ -198,7 +200,7 @@ def test_places_and_known_objects_are_not_searched_for() -> None:
     )
     findings = find_gaps(world([RED, BLUE]), Task(instruction="", subgoals=subgoals), start_m=START_M)
     assert [stop.sites[0].position_m for stop in findings.stops] == [(3.0, 4.0, 1.5), pytest.approx((9, 9, 0.2))]
-    assert "box-9" in findings.problems[0]
+    assert "box-9" in str(findings.problems[0])
 
 
 def test_in_a_flat_map_every_place_is_on_its_layer() -> None:

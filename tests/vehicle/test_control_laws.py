@@ -40,6 +40,7 @@ worlds = {
 }
 
 
+@pytest.mark.long
 @settings(max_examples=30, deadline=None, suppress_health_check=list(HealthCheck))
 @given(**worlds)
 def test_no_fault_makes_it_do_what_is_unsafe(flavour, happened, landable, returns):

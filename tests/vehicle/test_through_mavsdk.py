@@ -74,6 +74,7 @@ def waited(holds, seconds: float) -> bool:
     return False
 
 
+@pytest.mark.long
 def test_it_takes_off_flies_and_lands():
     with both(Flavour.PX4) as (double, vehicle):
         take_off(vehicle)

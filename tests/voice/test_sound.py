@@ -224,6 +224,7 @@ def test_without_a_canceller_the_drone_is_deaf_while_it_speaks_and_shortly_after
     assert heard.any()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("delay_ms", [20, 60, 120])
 def test_the_drones_own_speech_is_taken_out_of_the_microphone(delay_ms: int) -> None:
     pytest.importorskip("livekit")

@@ -71,6 +71,7 @@ def fly(
     return record, made[0][1]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("snr_db", [None, 10.0])
 def test_the_medicine_is_delivered_by_sound_alone(snr_db: float | None) -> None:
     record, person = fly(3, snr_db=snr_db)

@@ -164,6 +164,7 @@ HOSTILE = st.one_of(
 )
 
 
+@pytest.mark.long
 @settings(deadline=None, max_examples=300)
 @given(HOSTILE)
 def test_whatever_the_model_says_the_question_still_means_its_cut(text: str) -> None:

@@ -93,7 +93,7 @@ def test_a_model_is_only_asked_for_english() -> None:
 
 
 def test_unknown_words_stay_english_between_quotation_marks() -> None:
-    assert noun_phrase("the mauve haze over the bridge", GERMAN) == "“the mauve haze over the bridge”"
+    assert noun_phrase("the mauve haze over the bridge", GERMAN) == "„the mauve haze over the bridge“"
     assert consequence("I hover for a while", GERMAN) == "I hover for a while"
 
 

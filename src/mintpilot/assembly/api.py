@@ -7,7 +7,14 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias, cast
 
-from mintpilot.assembly.components import Choices, VehicleChoice, components_for, deliberation_parts, scripted_operator
+from mintpilot.assembly.components import (
+    Choices,
+    VehicleChoice,
+    check_choices,
+    components_for,
+    deliberation_parts,
+    scripted_operator,
+)
 from mintpilot.assembly.deliberation_report import DeliberationReport, deliberation_report
 from mintpilot.assembly.policies import make_planner
 from mintpilot.assembly.registry import names
@@ -94,6 +101,7 @@ def _planned(file: MissionFile, folder: Path, talk: Talk, choices: Choices, *, s
         task=world.task,
         question=question,
         seconds=seconds,
+        speech=talk.spoken,
     )
 
 
@@ -200,6 +208,7 @@ def _flown(
     from mintpilot.recording.recorders import TeeRecorder
     from mintpilot.recording.run_folder import RunFolder
 
+    check_choices(world, choices, people)
     keeper = RunFolder(out) if out is not None else None
     recorder = HistoryRecorder()
     recorders: list[Recorder] = [keeper if keeper is not None else recorder]

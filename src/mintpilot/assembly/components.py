@@ -19,6 +19,7 @@ from mintpilot.assembly.talk import Talk
 from mintpilot.assembly.worlds import World
 from mintpilot.core.errors import InfeasibleError, InputError
 from mintpilot.core.geometry import Floats, GridFrame
+from mintpilot.core.message import Message, message, verbatim
 from mintpilot.core.ports import Camera, Judge, Operator, Perception, Recorder, Vehicle
 from mintpilot.core.semantic_map import SemanticMap
 from mintpilot.core.task import Action
@@ -139,6 +140,36 @@ def scripted_operator(world: World, spec: OperatorSpec) -> ScriptedOperator:
     )
 
 
+def check_choices(world: World, choices: Choices, operators: tuple[Operator, ...]) -> None:
+    """Whether those parts can fly that mission; told before anything is made or kept.
+
+    Raises:
+        InputError: the vehicle has no camera and needs one, the camera does not go with it, or nobody can say go.
+    """
+    real = choices.vehicle is VehicleChoice.MAVLINK
+    if choices.camera and not real:
+        raise InputError(
+            f"--camera {choices.camera} goes with a real vehicle (--vehicle mavlink://…); simulators have one"
+        )
+    if real and world.task.needs_confirmation and not any(operator.attended for operator in operators):
+        raise InputError(
+            f"'{world.mission.instruction}' was read by a language model: a real vehicle flies it only after "
+            "somebody has said go; use --operator terminal or console"
+        )
+    if choices.camera or (choices.vehicle is VehicleChoice.MUJOCO and not world.is_map):
+        return
+    if choices.earlier is not None:
+        raise InputError(
+            "--map needs a camera, which looks again at what was free: fly with --vehicle mujoco, or leave it out"
+        )
+    for goal in world.task.subgoals:
+        if goal.action is Action.PHOTOGRAPH:
+            raise InputError(
+                f"'photograph {goal.reference.phrase}' cannot be done: this vehicle has no camera. "
+                "Fly with one that has, or leave the picture out."
+            )
+
+
 def components_for(
     world: World,
     choices: Choices,
@@ -159,8 +190,10 @@ def components_for(
         digests: whether the record is to be replayed.
 
     Raises:
+        InputError: as `check_choices` says.
         MissingPartError: MuJoCo is chosen but not installed.
     """
+    check_choices(world, choices, operators)
     return _Components(world, choices, operators, recorder, talk or Talk(), digests)
 
 
@@ -177,7 +210,7 @@ class _Components(AbstractContextManager[MissionComponents]):
         self._world, self._choices, self._operators, self._recorder = world, choices, operators, recorder
         self._talk, self._digests = talk, digests
         self._perception: Perception | None = None
-        self._left_out = ""
+        self._left_out = Message()
         self._stack = ExitStack()
 
     def __enter__(self) -> MissionComponents:
@@ -195,22 +228,6 @@ class _Components(AbstractContextManager[MissionComponents]):
             source = self._seeing(simulator, self._builder())
             made = self._made(simulator, source, surveys=surveys, known=known, watch_map=True)
             return self._seen_through(made, simulator)
-        if choices.camera:
-            if choices.vehicle is not VehicleChoice.MAVLINK:
-                raise InputError(
-                    f"--camera {choices.camera} goes with a real vehicle (--vehicle mavlink://…); simulators have one"
-                )
-            return self._beside_vehicle()
-        if choices.earlier is not None:
-            raise InputError(
-                "--map needs a camera, which looks again at what was free: fly with --vehicle mujoco, or leave it out"
-            )
-        photographs = [g for g in world.task.subgoals if g.action is Action.PHOTOGRAPH]
-        if photographs:
-            raise InputError(
-                f"'photograph {photographs[0].reference.phrase}' cannot be done: this vehicle has no camera. "
-                "Fly with one that has, or leave the picture out."
-            )
         if choices.vehicle is VehicleChoice.MAVLINK:
             return self._beside_vehicle()
         from mintpilot.simulation.kinematic import KinematicSimulator
@@ -231,11 +248,6 @@ class _Components(AbstractContextManager[MissionComponents]):
         from mintpilot.mission.process_worker import ProcessWorker
 
         world, choices = self._world, self._choices
-        if world.task.needs_confirmation and not any(operator.attended for operator in self._operators):
-            raise InputError(
-                f"'{world.mission.instruction}' was read by a language model: a real vehicle flies it only after "
-                "somebody has said go; use --operator terminal or console"
-            )
         sees = bool(choices.camera)
         surveys, known = self._begins() if sees else (False, world.map)
         builder = self._builder(down_to_m=world.mission.volume.lo_m[2]) if sees else None
@@ -295,17 +307,17 @@ class _Components(AbstractContextManager[MissionComponents]):
     def _seen_through(self, made: MissionComponents, camera: Camera | None) -> MissionComponents:
         earlier = self._choices.earlier
         viewed = camera if self._choices.views else None
-        return replace(made, viewed=viewed, begins_with=earlier.words if earlier is not None else "")
+        return replace(made, viewed=viewed, begins_with=earlier.words if earlier is not None else Message())
 
     def __exit__(self, *_: object) -> None:
         self._stack.close()
 
-    def _remarks(self) -> tuple[str, ...]:
+    def _remarks(self) -> tuple[Message, ...]:
         from mintpilot.assembly.perceiving import remarks_of
 
         seen = () if self._perception is None else tuple(remarks_of(self._perception))
-        left_out, self._left_out = self._left_out, ""
-        return (*self._talk.take_remarks(), *seen, *((left_out,) if left_out else ()))
+        left_out, self._left_out = self._left_out, Message()
+        return (*self._talk.take_remarks(), *map(verbatim, seen), *((left_out,) if left_out else ()))
 
     def _made(
         self,
@@ -337,17 +349,19 @@ class _Components(AbstractContextManager[MissionComponents]):
         parts = deliberation_parts(self._world, self._choices, self._talk)
         unsettled = [look.gap for look in self._world.mission.looks if look not in parts.mission.looks]
         if unsettled:
-            self._left_out = f"Nothing here settles a look at {', '.join(unsettled)}: such looks are left out."
+            gaps = ", ".join(unsettled)
+            self._left_out = message("Nothing here settles a look at {gaps}: such looks are left out.", gaps=gaps)
         briefed = self._choices.briefs or self._world.task.needs_confirmation
         return MissionComponents(
             parts=parts,
-            briefing=briefing_of(parts, known, lang=self._talk.lang) if briefed else None,
+            briefing=briefing_of(parts, known, lang=self._talk.lang, names=self._talk.names) if briefed else None,
             vehicle=vehicle,
             map_source=source,
             operators=self._operators,
             recorder=self._recorder,
             improve=self._talk.improve,
             remarks=self._remarks,
+            spoken=self._talk.spoken,
             watch_map=watch_map,
             digests=self._digests,
             strategy_name=strategy_label(self._choices.strategy, self._choices.strategy_arguments),

@@ -13,6 +13,7 @@ from mintpilot.mission.preview import Preview
 from mintpilot.recording.record import TreeRecord
 from mintpilot.recording.tree_data import tree_record
 from mintpilot.recording.tree_drawing import tree_text
+from mintpilot.wording.speech import Speech
 
 SCHEMA_VERSION = 1
 
@@ -86,6 +87,8 @@ class DeliberationReport(_Report):
 
     schema_version: int = SCHEMA_VERSION
     mission: str
+    language: str = "en"
+    """Of its texts; what is meant for programs is in English."""
     strategy: str
     steps: list[StepReport]
     """What will be done, in order."""
@@ -130,50 +133,54 @@ def deliberation_report(
     explanations: tuple[GapExplanation, ...],
     question: Question | None,
     seconds: float,
+    speech: Speech,
 ) -> DeliberationReport:
     """The report on a preview."""
     decision = preview.first.decision
     fly = decision if isinstance(decision, Fly) else None
     gaps = {gap.id: gap for gap in preview.first.findings.gaps}
-    tree = tree_record(decision.mint, gaps.values()) if decision.mint else None
+    tree = tree_record(decision.mint, gaps.values(), speech=speech) if decision.mint else None
     return DeliberationReport(
         mission=mission,
-        steps=steps_report(task),
+        language=speech.lang,
+        steps=steps_report(task, speech),
         keep_out=list(task.keep_out),
         slowly=task.slowly,
         needs_confirmation=task.needs_confirmation,
         strategy=strategy,
         gaps=[
-            _gap(gaps[explanation.gap_id], explanation) for explanation in explanations if explanation.gap_id in gaps
+            _gap(gaps[explanation.gap_id], explanation, speech)
+            for explanation in explanations
+            if explanation.gap_id in gaps
         ],
         tree=tree,
-        tree_text=tree_text(tree) if tree else "",
+        tree_text=tree_text(tree, speech=speech) if tree else "",
         plan_classes=_classes(decision.mint),
         query=_query(decision, question) if isinstance(decision, Ask) and question is not None else None,
         expected_questions=preview.expected_questions,
         expected_questions_played=preview.played,
         expected_questions_error=preview.error,
         stop_reason=str(fly.certificate.reason) if fly else None,
-        certificate=fly.certificate.text if fly else "",
+        certificate=speech(fly.certificate.text) if fly else "",
         plan_cost_s=fly.plan.cost_s if fly and fly.plan else None,
-        left_out=list(preview.first.left_out),
+        left_out=[speech(note) for note in preview.first.left_out],
         seconds=seconds,
     )
 
 
-def steps_report(task: Task) -> list[StepReport]:
+def steps_report(task: Task, speech: Speech) -> list[StepReport]:
     """The steps of a task, for reports."""
-    return [StepReport(n=s.n, action=s.action, target=s.target, place=s.place, text=s.text) for s in task.steps]
+    return [StepReport(n=s.n, action=s.action, target=s.target, place=s.place, text=speech(s.text)) for s in task.steps]
 
 
-def _gap(gap: KnowledgeGap, explanation: GapExplanation) -> GapReport:
+def _gap(gap: KnowledgeGap, explanation: GapExplanation, speech: Speech) -> GapReport:
     return GapReport(
         id=gap.id,
         kind=str(gap.kind),
-        description=gap.description,
+        description=speech.thing(gap.description),
         values=dict(zip(gap.values, gap.prior, strict=True)),
         critical=explanation.relevant,
-        why=explanation.why,
+        why=speech(explanation.why),
         cost_if_favourable_s=explanation.cost_if_favourable_s,
         cost_if_unfavourable_s=explanation.cost_if_unfavourable_s,
         divergence_m=explanation.divergence_m,

@@ -10,6 +10,7 @@ from pathlib import Path
 from mintpilot.assembly.retelling import retold
 from mintpilot.core.errors import RecordError
 from mintpilot.core.events import Event
+from mintpilot.core.message import Message, message
 from mintpilot.core.query import Question
 from mintpilot.core.semantic_map import Knowledge, Region, SemanticMap
 from mintpilot.core.told import PREFIX
@@ -29,11 +30,13 @@ class EarlierMap:
     """Since it was last drawn, seconds."""
 
     @property
-    def words(self) -> str:
-        """One sentence for whoever watches."""
-        return (
-            f"It begins with the map of {self.run.name}, which is {in_words(self.age_s)} old. What was free then is "
-            "looked at again as it comes into view; what was permitted then is asked about again."
+    def words(self) -> Message:
+        """For whoever watches."""
+        return message(
+            "It begins with the map of {run}, which is {age} old. What was free then is looked at again as it comes "
+            "into view; what was permitted then is asked about again.",
+            run=self.run.name,
+            age=in_words(self.age_s),
         )
 
 
@@ -79,13 +82,16 @@ def without_permissions(map: SemanticMap) -> SemanticMap:
     return replace(map, objects=objects, regions=tuple(regions), rooms=rooms)
 
 
-def in_words(age_s: float) -> str:
+def in_words(age_s: float) -> Message:
     """An age as people say it: ``18 hours``."""
-    for unit_s, unit in ((86400.0, "day"), (3600.0, "hour"), (60.0, "minute")):
-        if age_s >= unit_s:
-            count = int(age_s // unit_s)
-            return f"{count} {unit}{'s' if count > 1 else ''}"
-    return "less than a minute"
+    days, hours, minutes = (int(age_s // unit_s) for unit_s in (86400.0, 3600.0, 60.0))
+    if days:
+        return message("1 day") if days == 1 else message("{count} days", count=days)
+    if hours:
+        return message("1 hour") if hours == 1 else message("{count} hours", count=hours)
+    if minutes:
+        return message("1 minute") if minutes == 1 else message("{count} minutes", count=minutes)
+    return message("less than a minute")
 
 
 def _open(region: Region, drawn_name: str) -> Region:

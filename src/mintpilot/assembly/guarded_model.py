@@ -8,6 +8,7 @@ from collections.abc import Callable
 from contextlib import suppress
 
 from mintpilot.core.errors import DeviceError, MintPilotError
+from mintpilot.core.message import Message, message
 from mintpilot.core.ports import Completion, LanguageModel
 from mintpilot.models.deadline import within
 
@@ -37,7 +38,7 @@ class GuardedModel(LanguageModel):
         self._lock = threading.Lock()
         self._failures = 0
         self._rests_until_s = float("-inf")
-        self._remarks: list[str] = []
+        self._remarks: list[Message] = []
         self._has_failed = False
         self._closed = False
 
@@ -72,7 +73,7 @@ class GuardedModel(LanguageModel):
             self._failures = 0
         return made
 
-    def take_remarks(self) -> tuple[str, ...]:
+    def take_remarks(self) -> tuple[Message, ...]:
         """What there is to tell since it was last called: the first failure, once."""
         with self._lock:
             remarks, self._remarks = tuple(self._remarks), []
@@ -94,4 +95,6 @@ class GuardedModel(LanguageModel):
             if not self._has_failed:
                 self._has_failed = True
                 reason = why.removesuffix(": going on without it").rstrip(". ")
-                self._remarks.append(f"No help from the language model: {reason}. The mission goes on with templates.")
+                self._remarks.append(
+                    message("No help from the language model: {why}. The mission goes on with templates.", why=reason)
+                )

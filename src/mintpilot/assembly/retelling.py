@@ -9,6 +9,7 @@ from typing import Protocol
 from mintpilot.core.errors import RecordError
 from mintpilot.core.events import Event, MissionStarted, Noticed, Stepped
 from mintpilot.core.inputs import MissionBegun
+from mintpilot.core.message import message
 from mintpilot.core.ports import Recorder
 from mintpilot.core.query import Question
 from mintpilot.mission.directives import ShowQuestion, Tell, WithdrawQuestion
@@ -18,6 +19,7 @@ from mintpilot.mission.state import MissionState
 from mintpilot.mission.step import initial_state, step
 from mintpilot.recording.event_log import read_event_log
 from mintpilot.recording.run_folder import DERIVED
+from mintpilot.wording.speech import Speech
 
 
 class Watcher(Protocol):
@@ -57,7 +59,7 @@ def retell(run: Path, watcher: Watcher) -> str:
     for _ in retold((logged.event for logged in log), watcher):
         pass
     if log.cut:
-        watcher.record(Noticed(kind="record", text=f"The record breaks off: {log.cut}."))
+        watcher.record(Noticed(kind="record", text=message("The record breaks off: {cut}.", cut=log.cut)))
     return log.cut
 
 
@@ -69,13 +71,14 @@ def retold(events: Iterable[Event], watcher: Watcher) -> Iterator[MissionState]:
     """
     journal = Journal(_Derived(watcher))
     started: MissionStarted | None = None
+    spoken = Speech()
     state: MissionState | None = None
     for event in events:
         if isinstance(event, DERIVED):
             continue
         watcher.record(event)
         if isinstance(event, MissionStarted):
-            started = event
+            started, spoken = event, Speech(event.language, dict(event.names))
         if not isinstance(event, Stepped):
             continue
         if state is None:
@@ -89,9 +92,9 @@ def retold(events: Iterable[Event], watcher: Watcher) -> Iterator[MissionState]:
                 case ShowQuestion():
                     watcher.show(directive.question, directive.patience_s)
                 case WithdrawQuestion():
-                    watcher.withdraw(directive.question, directive.why)
+                    watcher.withdraw(directive.question, spoken(directive.why))
                 case Tell():
-                    watcher.tell(directive.text)
+                    watcher.tell(spoken(directive.text))
                 case _:
                     pass
         yield state

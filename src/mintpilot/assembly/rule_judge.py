@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 from mintpilot.assembly.flown_trace import FlownTrace
 from mintpilot.assembly.worlds import World
 from mintpilot.core.events import Event, LegFlown, OrderTaken
+from mintpilot.core.message import message
 from mintpilot.core.mission import Outcome, Verdict
 from mintpilot.core.ports import Judge, Recorder
 from mintpilot.core.trajectory import FlightEnd
@@ -62,7 +63,7 @@ class RuleJudge(Judge, Recorder):
         broken = tuple(self.broken())
         if not broken:
             return replace(found, rules_broken=())
-        reason = f"it broke the rule: {'; '.join(broken)}"
+        reason = message("it broke the rule: {rules}", rules="; ".join(broken))
         return Verdict(outcome=Outcome.RULE_BROKEN, reason=reason, rules_broken=broken)
 
     def broken(self) -> list[str]:

@@ -132,7 +132,7 @@ def gaps_of(map_: SemanticMap, instruction: str | None, *, start_m: Vec3) -> tup
                 candidates={i: named[i] for i, _ in found.things},
             )
         )
-    return gaps, list(findings.problems)
+    return gaps, [str(problem) for problem in findings.problems]
 
 
 _COLOURS = frozenset({"red", "orange", "yellow", "green", "blue", "purple", "white", "grey", "black", "brown"})

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from mintpilot.assembly.guarded_model import GuardedModel
 from mintpilot.assembly.registry import load
 from mintpilot.core.geometry import Vec3
+from mintpilot.core.message import Message
 from mintpilot.core.ports import LanguageModel, Proposer
 from mintpilot.core.query import Order, Query, Question, Reply
 from mintpilot.core.reading import AnsweredBy, Reading, guarded_replies
@@ -19,6 +20,7 @@ from mintpilot.mission.rewording import Improve
 from mintpilot.mission_file.schema import LanguageSpec
 from mintpilot.mission_file.schema_world import World, names_in
 from mintpilot.wording.rewording import ModelWording, Wording
+from mintpilot.wording.speech import Speech
 from mintpilot.wording.translating import ENGLISH, wording_for
 
 TEMPLATE = "template"
@@ -56,6 +58,8 @@ class Talk(AbstractContextManager["Talk"]):
         self.model_name = name
         self._model = None if model is None else GuardedModel(model, name)
         worded = wording_for(word_question, language=lang, names=names)
+        self.spoken = Speech(lang, self.names)
+        """Puts what is told into that language."""
         self.word: Wording = worded
         """Words a cut at once, by template."""
         self.improve: Improve | None = None
@@ -128,7 +132,7 @@ class Talk(AbstractContextManager["Talk"]):
 
         return order_in(text, self.lang)
 
-    def take_remarks(self) -> tuple[str, ...]:
+    def take_remarks(self) -> tuple[Message, ...]:
         """What went wrong with the model since it was last called, in sentences; each is told once."""
         return () if self._model is None else self._model.take_remarks()
 

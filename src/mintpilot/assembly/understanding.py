@@ -9,6 +9,7 @@ from pathlib import Path
 from mintpilot.assembly.talk import Talk, talk_for
 from mintpilot.assembly.worlds import build_world
 from mintpilot.core.errors import InputError
+from mintpilot.core.message import joined
 from mintpilot.core.ports import LanguageModel
 from mintpilot.core.task import Task
 from mintpilot.language.phrases import InstructionError
@@ -71,6 +72,6 @@ def _on_map(text: str, file: MissionFile, base: Path, talk: Talk) -> Task:
         return world.task
     problems = find_gaps(world.map, world.task, start_m=world.mission.start_m).problems
     if problems:
-        word = problems[0].split("'")[1] if "'" in problems[0] else ""
-        raise InstructionError(" ".join(problems), word=word)
+        word = str(next((value for name, value in problems[0].values if name in ("wanted", "what")), ""))
+        raise InstructionError(str(joined(problems)), word=word)
     return world.task

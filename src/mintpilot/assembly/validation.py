@@ -14,6 +14,7 @@ from mintpilot.mission_file.reader import Place, Problem, place_problems, read_o
 from mintpilot.mission_file.schema import MissionFile
 from mintpilot.mission_file.schema_world import MapWorld, ScenarioWorld
 from mintpilot.uncertainty.findings import find_gaps
+from mintpilot.uncertainty.keep_away import NothingToKeepAwayFromError
 
 _ANYWHERE = (0.0, 0.0, 0.0)
 """Stands for the start until the world is built."""
@@ -106,14 +107,18 @@ def _world_mistakes(file: MissionFile, base: Path) -> Iterator[tuple[Place, str]
     """The world as a whole, and whether a given map has what the mission speaks of."""
     try:
         world = build_world(file, base=base, seed=None)
+    except NothingToKeepAwayFromError as error:
+        wishes = [index for index, wish in enumerate(file.keep_away) if wish.thing == error.phrase]
+        yield (("keep_away", wishes[0], "from") if wishes else ("instruction",)), str(error)
+        return
     except MintPilotError as error:
         yield ("world",), str(error)
         return
     if not world.is_map:
         return
     for problem in find_gaps(world.map, world.task, start_m=world.mission.start_m).problems:
-        named = [i for i, goal in enumerate(file.goals or ()) if f"'{goal.phrase or goal.object}'" in problem]
-        yield (("goals", named[0]) if named else ("instruction",)), problem
+        named = [i for i, goal in enumerate(file.goals or ()) if f"'{goal.phrase or goal.object}'" in str(problem)]
+        yield (("goals", named[0]) if named else ("instruction",)), str(problem)
 
 
 def _tried(place: Place, work: Callable[[], object]) -> list[tuple[Place, str]]:

@@ -13,6 +13,7 @@ from mintpilot.assembly.spoken_rules import with_rules
 from mintpilot.core.errors import InputError, MissionError
 from mintpilot.core.gap import CorrelationGroup
 from mintpilot.core.geometry import Vec3
+from mintpilot.core.message import joined
 from mintpilot.core.mission import Mission
 from mintpilot.core.observation import PERSON
 from mintpilot.core.plan import VehicleLimits
@@ -30,7 +31,7 @@ from mintpilot.mission_file.seen_map import load_map
 from mintpilot.mission_file.values import with_values
 from mintpilot.simulation.scene import ClosedRoom, FlightRules, Person, Scene, Shape, Smoke, Solid
 from mintpilot.uncertainty.findings import find_gaps
-from mintpilot.uncertainty.keep_away import with_keep_away
+from mintpilot.uncertainty.keep_away import check_keep_away, with_keep_away
 
 if TYPE_CHECKING:
     from mintpilot.core.ports import TruthOracle
@@ -205,7 +206,8 @@ def _on_map(file: MissionFile, map_: SemanticMap, task: Task, start: Vec3, seed:
     map_, truths = valued.map, truths_of(file) | valued.truths
     problems = find_gaps(map_, task, start_m=start).problems if task.needs_confirmation else ()
     if problems:
-        raise InputError(f"'{mission.instruction}' was read by a language model: {' '.join(problems)}")
+        raise InputError(f"'{mission.instruction}' was read by a language model: {joined(problems)}")
+    check_keep_away(map_, task, start_m=start)
     return World(
         mission=replace(mission, limits=_with_reserve(_at_pace(mission.limits, task)), volume=map_.frame.box),
         task=task,

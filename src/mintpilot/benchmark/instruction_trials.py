@@ -74,7 +74,7 @@ def score(rows: Sequence[Mapping[str, str]], parse: Parse) -> Score:
         if row["within"] == "yes" and read(task) in references(row["reference"]):
             right += 1
         else:
-            wrong.append(f"{text} | {' ; '.join(s.text for s in task.steps)} | out: {', '.join(task.keep_out)}")
+            wrong.append(f"{text} | {' ; '.join(str(s.text) for s in task.steps)} | out: {', '.join(task.keep_out)}")
     within = sum(row["within"] == "yes" for row in cases)
     return Score(n=len(cases), within=within, right=right, wrong=tuple(wrong), refused=tuple(refused))
 
@@ -87,7 +87,7 @@ def read(task: Task) -> tuple[object, ...]:
             steps.append(("seek", frozenset(), frozenset(), ""))
             continue
         marks = (f"^{goal.height_m:g}" if goal.height_m is not None else "") + (
-            f"~{goal.dwell_s:g}" if f"for {goal.dwell_s:g} s" in step.text else ""
+            f"~{goal.dwell_s:g}" if f"for {goal.dwell_s:g} s" in str(step.text) else ""
         )
         steps.append(_step(step.action, step.target, step.place, marks))
     outs = frozenset((_content(re.sub(r"\(.*\)|, if possible", "", out)), _metres(out)) for out in task.keep_out)

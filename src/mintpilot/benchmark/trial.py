@@ -56,7 +56,7 @@ def fly_trial(
     try:
         with deadline(experiment.time_limit_s):
             verdict = flight.fly(experiment, cell, method, world, planner, survey, tally)
-            outcome, reason = verdict.outcome.value, verdict.reason
+            outcome, reason = verdict.outcome.value, str(verdict.reason)
             waiting, done = verdict.waiting, len(verdict.achieved)
     except TrialTimeoutError:
         outcome = TIMED_OUT

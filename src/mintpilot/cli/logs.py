@@ -85,7 +85,7 @@ def export(
     """Where the drone was, as CSV in metres, or as GeoJSON where the map has a georeference.
 
     Args:
-        run: A run folder, or its events.ndjson.
+        run: A run folder, its events.ndjson or its flight.mcap. A .mcap alone holds no battery and no georeference.
         to: The form.
         out: The file. Default: standard output.
         debug: Show the traceback of an error.

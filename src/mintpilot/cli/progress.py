@@ -25,8 +25,13 @@ from mintpilot.core.events import (
     PlanChosen,
 )
 from mintpilot.core.inputs import OperatorInput
+from mintpilot.core.message import Message, joined, message, verbatim
 from mintpilot.core.ports import Operator
 from mintpilot.core.query import Question
+from mintpilot.core.trajectory import FlightEnd
+from mintpilot.recording.build import speech_of
+from mintpilot.recording.words import ORDER_WORDS, OUTCOME_WORDS, REPLY_WORDS
+from mintpilot.wording.speech import Speech
 
 
 class LenientConsole(Console):
@@ -46,13 +51,14 @@ class Narrator:
     def __init__(self, console: Console) -> None:
         self._console = console
         self._bar: Progress | None = None
-        self._stage = "preparing"
+        self._stage = message("preparing")
         if console.is_terminal:
             self._bar = Progress(
                 SpinnerColumn(), TextColumn("{task.description}"), TimeElapsedColumn(), console=console, transient=True
             )
         self._pictures = 0
-        self._stops: dict[str, str] = {}
+        self._stops: dict[str, Message] = {}
+        self._speech = Speech()
         self.noticed = ""
         """What was noticed last, in words."""
 
@@ -69,15 +75,17 @@ class Narrator:
         """Tells one event."""
         if isinstance(event, FrameSeen):
             self._pictures += 1
-            self._go_on(f"{self._stage} ({self._pictures} pictures)")
+            self._go_on(message("{stage} ({count} pictures)", stage=self._stage, count=self._pictures))
             return
+        if isinstance(event, MissionStarted):
+            self._speech = speech_of(event)
         if isinstance(event, Noticed):
-            self.noticed = event.text
+            self.noticed = self._speech(event.text)
         if isinstance(event, PlanChosen) and event.plan is not None:
             self._stops |= {leg.stop.id: leg.stop.text for leg in event.plan.legs}
         line, stage = told(event, self._stops)
         if line:
-            self._say(line)
+            self._say(self._speech(line))
         if stage:
             self._stage = stage
             self._go_on(stage)
@@ -89,13 +97,13 @@ class Narrator:
             for task in list(self._bar.task_ids):
                 self._bar.remove_task(task)
 
-    def _go_on(self, stage: str) -> None:
+    def _go_on(self, stage: Message) -> None:
         if self._bar is None:
             return
         if not self._bar.task_ids:
-            self._bar.add_task(stage, total=None)
+            self._bar.add_task(self._speech(stage), total=None)
             self._bar.start()
-        self._bar.update(self._bar.task_ids[0], description=stage)
+        self._bar.update(self._bar.task_ids[0], description=self._speech(stage))
 
     def _say(self, line: str) -> None:
         with suppress(OSError):  # a full disk behind a log must not end a flight
@@ -140,7 +148,7 @@ class Attended(Operator):
         return self._operator.poll(time_s)
 
 
-def told(event: Event, stops: Mapping[str, str] | None = None) -> tuple[str, str]:
+def told(event: Event, stops: Mapping[str, Message] | None = None) -> tuple[Message, Message]:
     """The line that an event is worth, and the stage that begins with it; either may be empty.
 
     Args:
@@ -148,47 +156,71 @@ def told(event: Event, stops: Mapping[str, str] | None = None) -> tuple[str, str
         stops: what is done at each stop, by its id.
     """
     if isinstance(event, MissionStarted):
-        return f"Mission '{event.mission.name}': {event.mission.instruction}", "looking around"
+        named = message(
+            "Mission '{name}': {instruction}", name=event.mission.name, instruction=event.mission.instruction
+        )
+        return named, message("looking around")
     if isinstance(event, MapUpdated):
         known = event.map
-        found = ", ".join(
-            _count(len(things), noun)
-            for things, noun in ((known.objects, "object"), (known.regions, "region"), (known.rooms, "room"))
+        seen = message(
+            "Map: objects: {objects}, regions: {regions}, rooms: {rooms}.",
+            objects=len(known.objects),
+            regions=len(known.regions),
+            rooms=len(known.rooms),
         )
-        return f"Map ({event.why}): {found}.", "thinking"
+        return seen, message("thinking")
     if isinstance(event, Deliberated):
-        if event.chosen is None:
-            return (
-                f"Thought {event.seconds:.2f} s about {_count(len(event.gaps), 'knowledge gap')}: nothing to ask.",
-                "",
-            )
-        worth = f"the best question is worth {event.chosen.gain_bits:.2f} bits"
-        return f"Thought {event.seconds:.2f} s about {_count(len(event.gaps), 'knowledge gap')}: {worth}.", ""
+        chosen = event.chosen
+        worth = (
+            message("nothing to ask")
+            if chosen is None
+            else message("the best question is worth {gain_bits:.2f} bits", gain_bits=chosen.gain_bits)
+        )
+        thought = message(
+            "Thought {seconds:.2f} s about knowledge gaps ({count}): {worth}.",
+            seconds=event.seconds,
+            count=len(event.gaps),
+            worth=worth,
+        )
+        return thought, Message()
     if isinstance(event, Asked):
-        return f"Asked: {event.question.text} Answer: {_said(event)}.", "thinking"
+        asked = message("Asked: {question} Answer: {answer}.", question=event.question.text, answer=_said(event))
+        return asked, message("thinking")
     if isinstance(event, PlanChosen):
         if event.plan is None:
-            return "No plan that is known to be safe.", "staying safe"
-        return f"Plan: {event.plan.length_m:.1f} m, {event.plan.cost_s:.0f} s.", "flying"
+            return message("No plan that is known to be safe."), message("staying safe")
+        plan = message(
+            "Plan: {length_m:.1f} m, {cost_s:.0f} s.", length_m=event.plan.length_m, cost_s=event.plan.cost_s
+        )
+        return plan, message("flying")
     if isinstance(event, LegFlown) and event.phase == "survey":
-        return "", "surveying"
+        return Message(), message("surveying")
     if isinstance(event, LegFlown):
-        where = "back to the start" if event.phase == "return" else (stops or {}).get(event.stop_id, "")
-        return f"Flown ({event.phase}): {f'{where}, ' if where else ''}{event.log.end.value}.", ""
+        home = message("back to the start")
+        where = home if event.phase == "return" else (stops or {}).get(event.stop_id, Message())
+        return message("Flown: {what}.", what=joined([where, _ENDS[event.log.end]], ", ")), Message()
     if isinstance(event, OrderTaken):
-        return f"Order: {event.order.value}. {event.answer}", ""
+        return message("Order: {order}. {answer}", order=ORDER_WORDS[event.order], answer=event.answer), Message()
     if isinstance(event, Noticed):
-        return f"Noticed: {event.text}", ""
+        return message("Noticed: {what}", what=event.text), Message()
     if isinstance(event, MissionEnded):
-        return f"Ended: {event.verdict.outcome.value}. {event.verdict.reason}", "writing the report"
-    return "", ""
+        ended = message(
+            "Ended: {outcome}. {why}", outcome=OUTCOME_WORDS[event.verdict.outcome], why=event.verdict.reason
+        )
+        return ended, message("writing the report")
+    return Message(), Message()
 
 
-def _count(number: int, noun: str) -> str:
-    return f"{number} {noun}{'' if number == 1 else 's'}"
+_ENDS = {
+    FlightEnd.ARRIVED: message("arrived"),
+    FlightEnd.INTERRUPTED: message("broken off"),
+    FlightEnd.FAILED: message("failed"),
+}
 
 
-def _said(event: Asked) -> str:
+def _said(event: Asked) -> Message:
     """The reply in a word or two."""
-    part = event.answer.part
-    return event.answer.reply.value if part is None else event.question.query.part_words(part)
+    answer = event.answer
+    if answer.option is not None:
+        return verbatim(event.question.query.part_words(answer.option))
+    return REPLY_WORDS[answer.reply]

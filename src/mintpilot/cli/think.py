@@ -7,6 +7,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from mintpilot.cli.exits import ExitCode
+from mintpilot.core.message import message
+from mintpilot.wording.speech import Speech
 
 if TYPE_CHECKING:
     from mintpilot.assembly.deliberation_report import DeliberationReport, GapReport
@@ -37,53 +39,80 @@ def think(
 
 def lines_of(report: DeliberationReport) -> Iterator[str]:
     """The report for people, line by line."""
-    yield f"Mission {report.mission}, strategy {report.strategy}: {_count(len(report.gaps), 'knowledge gap')}"
+    speech = Speech(report.language)
+    head = message(
+        "Mission {name}, strategy {strategy}: knowledge gaps: {count}",
+        name=report.mission,
+        strategy=report.strategy,
+        count=len(report.gaps),
+    )
+    yield speech(head)
     yield from (f"  {step.n} {step.text}" for step in report.steps)
     if report.slowly:
-        yield "  the whole flight slowly"
+        yield f"  {speech.label('the whole flight slowly')}"
     if report.keep_out:
-        yield f"  keep out of: {', '.join(report.keep_out)}"
+        yield f"  {speech(message('keep out of: {kinds}', kinds=', '.join(report.keep_out)))}"
     for gap in report.gaps:
-        yield from _gap_lines(gap)
+        yield from _gap_lines(gap, speech)
     if report.tree_text:
         yield ""
-        yield "Tree"
+        yield speech.label("Tree")
         yield from (f"  {line}" for line in report.tree_text.splitlines())
     if report.plan_classes:
         yield ""
-        yield "Flights that may be needed"
+        yield speech.label("Flights that may be needed")
         for plan in report.plan_classes:
-            cost = "nothing can be flown" if plan.cost_s is None else f"{plan.cost_s:.1f} s"
-            yield f"  {plan.probability:6.1%}  {cost}, in {_count(len(plan.hypotheses), 'case')}"
+            cost = (
+                message("nothing safe can be flown")
+                if plan.cost_s is None
+                else message("{cost_s:.1f} s", cost_s=plan.cost_s)
+            )
+            line = message(
+                "  {share:6.1%}  {cost}, cases: {count}",
+                share=plan.probability,
+                cost=cost,
+                count=len(plan.hypotheses),
+            )
+            yield speech(line)
     yield ""
-    yield from _decision_lines(report)
+    yield from _decision_lines(report, speech)
     played = report.expected_questions_played
-    bound = "" if not played else f" (± {report.expected_questions_error:.2f}, over {played} played missions)"
     for note in report.left_out:
-        yield f"A bound on the work was reached: {note}."
-    yield f"Questions to be expected: {report.expected_questions:.2f}{bound}. Thought for {report.seconds:.2f} s."
+        yield speech(message("A bound on the work was reached: {bound}.", bound=note))
+    if played:
+        played_out = message(
+            "Questions to be expected: {expected:.2f} (± {error:.2f}, over {played} played missions).",
+            expected=report.expected_questions,
+            error=report.expected_questions_error or 0.0,
+            played=played,
+        )
+        yield speech(played_out)
+    else:
+        yield speech(message("Questions to be expected: {expected:.2f}.", expected=report.expected_questions))
+    yield speech(message("Thought for {seconds:.2f} s.", seconds=report.seconds))
 
 
-def _gap_lines(gap: GapReport) -> Iterator[str]:
+def _gap_lines(gap: GapReport, speech: Speech) -> Iterator[str]:
     yield ""
-    yield f"  {gap.description} ({'critical' if gap.critical else 'irrelevant'})"
+    yield f"  {gap.description} ({speech.label('critical') if gap.critical else speech.label('irrelevant')})"
     yield "    " + ", ".join(f"{value} {prior:.0%}" for value, prior in gap.values.items())
     yield f"    {gap.why}"
 
 
-def _decision_lines(report: DeliberationReport) -> Iterator[str]:
+def _decision_lines(report: DeliberationReport, speech: Speech) -> Iterator[str]:
     if report.query is None:
-        yield f"Nothing to ask ({report.stop_reason}): {report.certificate}"
+        yield speech(message("Nothing to ask: {why}", why=report.certificate))
         return
     query = report.query
-    yield f"It would ask: {query.text}"
+    yield speech(message("It would ask: {question}", question=query.text))
     if query.option_means:
         yield from (f"  {reply}: {means}" for reply, means in zip(query.replies, query.option_means, strict=True))
     else:
-        yield f"  yes: {query.yes_means}"
-        yield f"  no:  {query.no_means}"
-    yield f"  worth {query.gain_bits:.2f} bits and {query.regret_saved_s:.1f} s of flight"
-
-
-def _count(number: int, noun: str) -> str:
-    return f"{number} {noun}{'' if number == 1 else 's'}"
+        yield speech(message("  yes: {means}", means=query.yes_means))
+        yield speech(message("  no:  {means}", means=query.no_means))
+    worth = message(
+        "  worth {gain_bits:.2f} bits and {saved_s:.1f} s of flight",
+        gain_bits=query.gain_bits,
+        saved_s=query.regret_saved_s,
+    )
+    yield speech(worth)

@@ -86,7 +86,9 @@ def _row(one: UnderstoodInstruction) -> _Row:
     steps = task.steps if task is not None else ()
     return _Row(
         text=one.text,
-        steps=[{"n": s.n, "action": s.action, "target": s.target, "place": s.place, "text": s.text} for s in steps],
+        steps=[
+            {"n": s.n, "action": s.action, "target": s.target, "place": s.place, "text": str(s.text)} for s in steps
+        ],
         keep_out=list(task.keep_out) if task is not None else [],
         slowly=task is not None and task.slowly,
         needs_confirmation=task is not None and task.needs_confirmation,

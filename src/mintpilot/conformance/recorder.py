@@ -9,6 +9,7 @@ from mintpilot.assembly.components import Choices, VehicleChoice, components_for
 from mintpilot.conformance.sample import sample_world
 from mintpilot.core.errors import ConformanceError
 from mintpilot.core.events import Event, MissionEnded, Noticed, Timed
+from mintpilot.core.message import verbatim
 from mintpilot.core.mission import Outcome, Verdict
 from mintpilot.core.ports import Recorder
 from mintpilot.mission.loop import fly_mission
@@ -36,9 +37,9 @@ def check_recorder(make: Callable[[], Recorder]) -> None:
     """
     mission = sample_events()
     _tell(make(), mission, "a whole mission")
-    verdict = Verdict(outcome=Outcome.ABORTED, reason=_HOSTILE)
+    verdict = Verdict(outcome=Outcome.ABORTED, reason=verbatim(_HOSTILE))
     _tell(make(), (MissionEnded(verdict=verdict), *mission[:2]), "an end before the beginning")
-    strange = (Noticed(kind="conformance", text=_HOSTILE), Timed(stage=_HOSTILE[:40], seconds=0.0))
+    strange = (Noticed(kind="conformance", text=verbatim(_HOSTILE)), Timed(stage=_HOSTILE[:40], seconds=0.0))
     _tell(make(), (*mission[:3], *strange, MissionEnded(verdict=verdict)), "hostile words")
 
 

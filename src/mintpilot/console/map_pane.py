@@ -9,10 +9,10 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import NDArray
 
-from mintpilot.console.naming import named
 from mintpilot.console.protocol import MapPane, RegionPane, Thing
 from mintpilot.core.geometry import Bools, Box
 from mintpilot.core.semantic_map import Cell, Knowledge, MapObject, Region, Room, SemanticMap
+from mintpilot.wording.speech import IN_ENGLISH, Speech
 
 _UNKNOWN, _FREE, _OCCUPIED, _FIRST_REGION = 0, 1, 2, 3
 _MOST_REGIONS = 200
@@ -24,22 +24,22 @@ _BAND_M = (0.6, 0.6)
 
 
 def map_pane(
-    map: SemanticMap, height_m: float, lang: str = "en", called: Mapping[str, str] = MappingProxyType({})
+    map: SemanticMap, height_m: float, speech: Speech = IN_ENGLISH, called: Mapping[str, str] = MappingProxyType({})
 ) -> tuple[MapPane, bytes]:
     """The map seen from above, and its picture as PNG.
 
     Args:
         map: as the drone believes it to be.
         height_m: at which the drone flies; obstacles near that height are drawn.
-        lang: in which regions and rooms are named.
+        speech: in which regions and rooms are named.
         called: what questions call them, by id; others are called as the map does.
     """
     box = map.frame.box
     regions = map.regions[:_MOST_REGIONS]
     pane = MapPane(
         box=(box.lo_m[0], box.lo_m[1], box.hi_m[0], box.hi_m[1]),
-        things=(*_rooms(map.rooms, lang, called), *_objects(map.objects)),
-        regions=tuple(_region(map, region, lang, called) for region in regions),
+        things=(*_rooms(map.rooms, speech, called), *_objects(map.objects)),
+        regions=tuple(_region(map, region, speech, called) for region in regions),
     )
     return pane, _png(columns(map, height_m))
 
@@ -65,24 +65,24 @@ def _from_above(map: SemanticMap, region: Region) -> Bools:
     return inside.reshape(ny, nx)
 
 
-def _region(map: SemanticMap, region: Region, lang: str, called: Mapping[str, str]) -> RegionPane:
+def _region(map: SemanticMap, region: Region, speech: Speech, called: Mapping[str, str]) -> RegionPane:
     y, x = np.nonzero(_from_above(map, region))
     middle = (0.0, float(y.mean()) if y.size else 0.0, float(x.mean()) if x.size else 0.0)
     centre = map.frame.centres_of([middle])[0]
     return RegionPane(
         id=region.id,
-        words=named(called.get(region.id) or region.description, lang) or region.id,
+        words=speech.thing(called.get(region.id) or region.description) or region.id,
         passable=region.passable.value,
         centre=(round(float(centre[0]), 2), round(float(centre[1]), 2)),
     )
 
 
-def _rooms(rooms: tuple[Room, ...], lang: str, called: Mapping[str, str]) -> tuple[Thing, ...]:
+def _rooms(rooms: tuple[Room, ...], speech: Speech, called: Mapping[str, str]) -> tuple[Thing, ...]:
     return tuple(
         Thing(
             id=room.id,
             label="room",
-            words=named(called.get(room.id) or room.description, lang) or room.id,
+            words=speech.thing(called.get(room.id) or room.description) or room.id,
             box=_flat(room.door_m),
             state="searched"
             if room.searched

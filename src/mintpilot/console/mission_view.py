@@ -51,11 +51,15 @@ from mintpilot.core.inputs import (
     MotionEnded,
     Ticked,
 )
+from mintpilot.core.message import Message, joined, message, verbatim
 from mintpilot.core.mission import Verdict
-from mintpilot.core.query import Evidence, Question
+from mintpilot.core.query import Answer, Evidence, Question
 from mintpilot.core.semantic_map import SemanticMap
 from mintpilot.core.trajectory import VehicleState
 from mintpilot.core.tree import Certificate, GapExplanation
+from mintpilot.recording.build import speech_of
+from mintpilot.recording.words import ORDER_WORDS, REPLY_WORDS
+from mintpilot.wording.speech import Speech
 
 _STEP_M = 0.1
 """Of the flown path: places nearer than this to the last one are left out, metres."""
@@ -150,15 +154,16 @@ class MissionView:
             case Asked():
                 self._learnt(event)
             case OrderTaken():
-                self._log("order", f"{event.order.value}: {event.answer}" if event.answer else event.order.value)
+                parts = [ORDER_WORDS[event.order], event.answer]
+                self._log("order", self._speech(joined(parts, ": ")))
             case Noticed():
-                self._log("note", event.text)
+                self._log("note", self._speech(event.text))
             case QuestionTimed():
                 self._timed = event
                 if self._is_open(event.question):
                     self._show()
             case FactsChanged():
-                self._board.put("told", told_pane(event, self._lang))
+                self._board.put("told", told_pane(event, self._speech))
             case MissionEnded():
                 self._ended(event)
             case _:
@@ -166,7 +171,7 @@ class MissionView:
 
     def _begun(self, event: MissionStarted) -> None:
         self._started = event
-        self._progress.begin(event.task)
+        self._progress.begin(event.task, self._speech)
         self._mission()
         self._steps()
         self._log("begun", event.mission.instruction)
@@ -184,9 +189,9 @@ class MissionView:
                 strategy=self._started.strategy,
                 start=mission.start_m,
                 volume=(left, bottom, right, top),
-                briefing=self._started.briefing.lines if self._started.briefing is not None else (),
+                briefing=tuple(map(self._speech, self._started.briefing.lines)) if self._started.briefing else (),
                 verdict=verdict.outcome.value if verdict is not None else "",
-                reason=verdict.reason if verdict is not None else "",
+                reason=self._speech(verdict.reason) if verdict is not None else "",
                 waited_s=verdict.waiting.delay_s if verdict is not None else 0.0,
                 hidden_s=verdict.waiting.hidden_s if verdict is not None else 0.0,
             ),
@@ -194,10 +199,10 @@ class MissionView:
 
     def _ended(self, event: MissionEnded) -> None:
         if self._question is not None:
-            self.withdraw(self._question.id, "the mission is over")
+            self.withdraw(self._question.id, self._speech(message("the mission is over")))
         if self._started is not None:
             self._mission(event.verdict)
-        self._log("ended", event.verdict.reason)
+        self._log("ended", self._speech(event.verdict.reason))
 
     def _stepped(self, event: Stepped) -> None:
         input = event.input
@@ -211,7 +216,7 @@ class MissionView:
             case DeliberationEnded():
                 self._decided(input)
             case Answered():
-                said = input.answer.text or input.answer.reply.value
+                said = input.answer.text or self._speech(_reply(input.answer))
                 self._log("answer", f"{said} ({input.operator})" if input.operator else said)
             case _:
                 pass
@@ -242,7 +247,7 @@ class MissionView:
     def _draw(self, map: SemanticMap) -> None:
         self._map, self._drawn_s = map, self._clock_s
         height_m = self._started.mission.start_m[2] if self._started is not None else 1.0
-        pane, picture = map_pane(map, height_m, self._lang, self._called)
+        pane, picture = map_pane(map, height_m, self._speech, self._called)
         self._board.put("map", pane, picture)
 
     def _decided(self, event: DeliberationEnded) -> None:
@@ -276,13 +281,13 @@ class MissionView:
         else:
             self._board.put("plan", PathPane())
         self._tree(event.certificate, event.plan.signature if event.plan is not None else "")
-        self._log("plan", event.certificate.text)
+        self._log("plan", self._speech(event.certificate.text))
         self._steps()
 
     def _learnt(self, event: Asked) -> None:
         self._asked_gaps |= set(event.question.query.gap_ids)
         part = event.answer.part
-        line = AnswerLine(question=event.question.text, reply=event.answer.text or event.answer.reply.value)
+        line = AnswerLine(question=event.question.text, reply=event.answer.text or self._speech(_reply(event.answer)))
         if part is not None:
             self._replies.append((Evidence(query=event.question.query, part=part), line))
         self._tree(None)
@@ -301,6 +306,7 @@ class MissionView:
             flown=flown,
             certificate=certificate,
             earlier=self._earlier,
+            speech=self._speech,
         )
         self._tree_shown = pane
         self._board.put("tree", pane)
@@ -314,7 +320,7 @@ class MissionView:
             question,
             self._asked,
             self._explanations,
-            lang=self._lang,
+            speech=self._speech,
             deadline_s=timed.deadline_s if timed is not None else self._deadline_s,
             extended=timed is not None and timed.extended,
             again=again,
@@ -323,9 +329,9 @@ class MissionView:
         self._pictures.about(question, self._map)
 
     @property
-    def _lang(self) -> str:
+    def _speech(self) -> Speech:
         """The language in which the drone speaks."""
-        return self._started.language if self._started is not None else "en"
+        return speech_of(self._started)
 
     def _path(self, path_m: Floats, seconds: float) -> None:
         self._board.put("plan", PathPane(points=path_points(path_m), seconds=round(seconds, 1)))
@@ -335,6 +341,10 @@ class MissionView:
 
     def _log(self, kind: str, text: str) -> None:
         self._board.append("log", LogLine(time_s=round(self._clock_s, 1), kind=kind, text=text))
+
+
+def _reply(answer: Answer) -> Message:
+    return REPLY_WORDS.get(answer.reply) or verbatim(answer.reply.value)
 
 
 def _rounded(point_m: tuple[float, float, float]) -> tuple[float, float, float]:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from mintpilot.console.naming import named
 from mintpilot.console.protocol import Consequence, Point, QuestionPane, Reason, Spot, Worth
 from mintpilot.core.decisions import AskQuestion
 from mintpilot.core.gap import GapKind, KnowledgeGap
@@ -13,6 +12,7 @@ from mintpilot.core.plan import Plan
 from mintpilot.core.query import NO_PART, YES_PART, Answer, Query, Question, Reply
 from mintpilot.core.reading import guarded_replies
 from mintpilot.core.tree import GapExplanation, Mint
+from mintpilot.wording.speech import Speech
 
 _MOST_POINTS = 400
 
@@ -22,7 +22,7 @@ def question_pane(
     asked: AskQuestion | None,
     explanations: dict[str, GapExplanation],
     *,
-    lang: str,
+    speech: Speech,
     deadline_s: float,
     extended: bool = False,
     again: bool = False,
@@ -33,7 +33,7 @@ def question_pane(
         question: with its id; with a read-back where one is to be confirmed.
         asked: the deliberation that chose it; None: nothing is known of what follows (before take-off).
         explanations: of the gaps, by id.
-        lang: of its words.
+        speech: of its words.
         deadline_s: until when it is waited for, mission clock.
         extended: whether more time was given.
         again: whether words were not understood.
@@ -41,14 +41,14 @@ def question_pane(
     return QuestionPane(
         id=question.id,
         text=question.text,
-        lang=lang,
+        lang=speech.lang,
         attempt=question.attempt,
         deadline_s=deadline_s,
         extended=extended,
         again=again,
-        consequences=_consequences(question, asked, lang),
-        spots=tuple(spot for gap in question.gaps for spot in _spots(gap, question.query, lang)),
-        why=tuple(_reason(e) for gap in question.gaps if (e := explanations.get(gap.id)) is not None),
+        consequences=_consequences(question, asked, speech),
+        spots=tuple(spot for gap in question.gaps for spot in _spots(gap, question.query, speech)),
+        why=tuple(_reason(e, speech) for gap in question.gaps if (e := explanations.get(gap.id)) is not None),
         worth=_worth(asked),
         read_back=_said(question, question.read_back),
         read_back_means=_means(question, question.read_back),
@@ -62,16 +62,16 @@ def path_points(path_m: Floats) -> tuple[Point, ...]:
     return tuple((round(float(x), 2), round(float(y), 2), round(float(z), 2)) for x, y, z in kept)
 
 
-def _reason(explanation: GapExplanation) -> Reason:
+def _reason(explanation: GapExplanation, speech: Speech) -> Reason:
     return Reason(
-        words=explanation.figures or explanation.why,
+        words=speech(explanation.figures or explanation.why),
         best_s=explanation.cost_if_favourable_s,
         worst_s=explanation.cost_if_unfavourable_s,
         apart_m=explanation.divergence_m,
     )
 
 
-def _consequences(question: Question, asked: AskQuestion | None, lang: str) -> tuple[Consequence, ...]:
+def _consequences(question: Question, asked: AskQuestion | None, speech: Speech) -> tuple[Consequence, ...]:
     query = question.query
     reasoning = asked.reasoning if asked is not None else None
     mint = reasoning.mint if reasoning is not None else None
@@ -91,7 +91,7 @@ def _consequences(question: Question, asked: AskQuestion | None, lang: str) -> t
     if reasoning is not None and cautious is not None:
         silence = _with_plan(silence, cautious, reasoning.gaps, None)
     return tuple(
-        c.model_copy(update={"undone": tuple(named(one, lang) for one in c.undone)}) for c in (*found, silence)
+        c.model_copy(update={"undone": tuple(speech.thing(one) for one in c.undone)}) for c in (*found, silence)
     )
 
 
@@ -125,17 +125,17 @@ def _with_plan(
     return consequence.model_copy(update=update)
 
 
-def _spots(gap: KnowledgeGap, query: Query, lang: str) -> tuple[Spot, ...]:
+def _spots(gap: KnowledgeGap, query: Query, speech: Speech) -> tuple[Spot, ...]:
     if gap.kind is GapKind.GO:
         return ()
     if not gap.candidates:
         region = gap.subject if gap.kind is GapKind.OBSTACLE else ""
-        return (Spot(id=gap.subject, words=named(gap.description, lang), position=gap.position_m, region=region),)
+        return (Spot(id=gap.subject, words=speech.thing(gap.description), position=gap.position_m, region=region),)
     choosable = query.gap_ids == (gap.id,)
     return tuple(
         Spot(
             id=c.id,
-            words=named(c.description, lang) if c.description else c.id,
+            words=speech.thing(c.description) if c.description else c.id,
             position=c.position_m,
             choosable=choosable,
         )

@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from mintpilot.console.protocol import StepPane, StepsPane
 from mintpilot.core.plan import Plan
 from mintpilot.core.task import Task
+from mintpilot.wording.speech import Speech
 
 
 class Progress:
@@ -21,9 +22,9 @@ class Progress:
         self._texts: list[tuple[str, str]] = []
         self._done: set[str] = set()
 
-    def begin(self, task: Task) -> None:
-        """Takes over the task."""
-        self._texts, self._done = _keys(task), set()
+    def begin(self, task: Task, speech: Speech) -> None:
+        """Takes over the task, told in that language."""
+        self._texts, self._done = _keys(task, speech), set()
 
     def did(self, stops: Iterable[str]) -> None:
         """Takes in which stops were done so far."""
@@ -56,7 +57,7 @@ class Progress:
         return StepsPane(steps=tuple(steps))
 
 
-def _keys(task: Task) -> list[tuple[str, str]]:
+def _keys(task: Task, speech: Speech) -> list[tuple[str, str]]:
     """(id of the stops' common beginning, text) of each step; without an id: all stops that belong to no other."""
     goals = list(enumerate(task.subgoals, 1))
     found: list[tuple[str, str]] = []
@@ -66,7 +67,7 @@ def _keys(task: Task) -> list[tuple[str, str]]:
             number, goal = goals.pop(0)
             if goal.action == step.action and goal.reference.phrase in (step.target, step.place):
                 key = f"{goal.action}:{number}"
-        found.append((key, step.text))
+        found.append((key, speech(step.text)))
     return found
 
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Final
 
-from mintpilot.console.naming import named
 from mintpilot.console.protocol import ToldLine, ToldPane
 from mintpilot.core.events import FactsChanged
 from mintpilot.core.told import Fact, KeepOut, RegionBlocked, RegionPassable, RoomSearched, ThisOne
+from mintpilot.wording.speech import Speech
 
 _NAMES: Final[dict[type[Fact], str]] = {
     KeepOut: "keep-out",
@@ -18,7 +18,7 @@ _NAMES: Final[dict[type[Fact], str]] = {
 }
 
 
-def told_pane(event: FactsChanged, lang: str) -> ToldPane:
+def told_pane(event: FactsChanged, speech: Speech) -> ToldPane:
     """All facts with their standing; what they speak of in that language."""
     return ToldPane(
         told=tuple(
@@ -26,11 +26,11 @@ def told_pane(event: FactsChanged, lang: str) -> ToldPane:
                 {
                     "id": known.id,
                     "fact": _NAMES[type(known.fact)],
-                    "words": named(known.words, lang),
+                    "words": speech.thing(known.words),
                     "who": known.operator,
                     "time_s": round(known.told_s, 1),
                     "standing": known.standing.value,
-                    "why": known.why,
+                    "why": speech(known.why),
                     "corners": known.fact.corners_m if isinstance(known.fact, KeepOut) else (),
                 }
             )

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from mintpilot.core.gap import FLY, STAY, GapKind, KnowledgeGap
+from mintpilot.core.message import Message
 from mintpilot.core.query import Literal, Query, Question, Saying, SayingKind
 
 GO_GAP: Final = KnowledgeGap(
@@ -27,7 +28,7 @@ GO_QUERY: Final = Query(
 class Briefing:
     """Shown on the ground; only an explicit yes to the question lets the drone take off."""
 
-    lines: tuple[str, ...]
+    lines: tuple[Message, ...]
     """The steps as they were read, what is stayed out of, what is not known, and battery against need."""
     question: Question
     """About `GO_QUERY`; yes means fly."""

@@ -7,6 +7,7 @@ from typing import TypeAlias
 
 from mintpilot.core.gap import Belief, KnowledgeGap
 from mintpilot.core.geometry import Bools, Vec3, frozen
+from mintpilot.core.message import Message
 from mintpilot.core.plan import LeftUndone, Plan, Prospect, Stop
 from mintpilot.core.query import Question
 from mintpilot.core.semantic_map import Knowledge
@@ -34,7 +35,7 @@ class Reasoning:
     """Of the gaps that had not been explained before, at what they are worth now."""
     proposed: tuple[ScoredQuery, ...] = ()
     """Queries that a language model proposed and that were sound, scored, best first."""
-    left_out: tuple[str, ...] = ()
+    left_out: tuple[Message, ...] = ()
     """What bounds on the work left out, in plain sentences."""
 
 
@@ -73,7 +74,7 @@ class FlyPlan:
 class NoPlan:
     """Nothing can be flown, whatever the answers are."""
 
-    reason: str
+    reason: Message
     left: tuple[LeftUndone, ...] = ()
     """All stops with what runs short for each."""
 
@@ -91,7 +92,7 @@ class FlyTrajectory:
 class RefuseFlight:
     """No trajectory leads on that passes the checks."""
 
-    reason: str
+    reason: Message
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -106,7 +107,7 @@ class Explore:
     """Places that no checked trajectory leads to, metres."""
     inspected: Bools
     """Flags (nz, ny, nx) of surface cells that were looked at from near."""
-    notes: tuple[str, ...] = ()
+    notes: tuple[Message, ...] = ()
 
     def __post_init__(self) -> None:
         frozen(self.inspected)

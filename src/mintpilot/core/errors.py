@@ -20,9 +20,17 @@ from __future__ import annotations
 import difflib
 from collections.abc import Iterable
 
+from mintpilot.core.message import Message, verbatim
+
 
 class MintPilotError(Exception):
-    """Root of all errors that MintPilot raises on purpose."""
+    """Root of all errors that MintPilot raises on purpose. Where people may hear of one, its text is a `Message`."""
+
+    @property
+    def said(self) -> Message:
+        """What went wrong, to be said in any language; a text that is no message is said as it is."""
+        first = self.args[0] if self.args else None
+        return first if isinstance(first, Message) else verbatim(str(self))
 
 
 class InputError(MintPilotError):

@@ -8,6 +8,7 @@ from typing import TypeAlias
 from mintpilot.core.briefing import Briefing
 from mintpilot.core.gap import CorrelationGroup, KnowledgeGap
 from mintpilot.core.inputs import Input
+from mintpilot.core.message import Message
 from mintpilot.core.mission import Mission, Verdict
 from mintpilot.core.observation import Detection, Frame
 from mintpilot.core.plan import Plan
@@ -134,7 +135,7 @@ class OrderTaken:
     operator: str
     text: str
     """As it was given."""
-    answer: str
+    answer: Message
     """What the drone said that it does."""
     time_s: float
     """Mission clock."""
@@ -185,7 +186,7 @@ class Noticed:
 
     kind: str
     """A short stable name, e.g. ``contradiction``."""
-    text: str
+    text: Message
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

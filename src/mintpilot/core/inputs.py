@@ -11,6 +11,7 @@ from enum import StrEnum
 from typing import TypeAlias
 
 from mintpilot.core.decisions import Decision
+from mintpilot.core.message import NOTHING, Message
 from mintpilot.core.motion import MotionEnd
 from mintpilot.core.query import Answer, Order
 from mintpilot.core.room_view import RoomView
@@ -58,7 +59,7 @@ class MapObserved:
 
     time_s: float
     map: SemanticMap
-    obstruction: str = ""
+    obstruction: Message = NOTHING
     """Why the path that is being flown is not known to be free any more; empty while it is."""
 
 

@@ -10,6 +10,7 @@ from typing import Any
 from mintpilot.core.errors import MissionError
 from mintpilot.core.geometry import Box, Vec3
 from mintpilot.core.georeference import Georeference
+from mintpilot.core.message import Message
 from mintpilot.core.plan import LeftUndone, Look, VehicleLimits
 
 
@@ -269,7 +270,7 @@ class Achieved:
 
     n: int
     """Number of its step."""
-    text: str
+    text: Message
     """What was done, as a short sentence without a full stop."""
     at_s: float
     """When, seconds since the task began."""
@@ -281,9 +282,9 @@ class Left:
 
     n: int
     """Number of its step."""
-    text: str
+    text: Message
     """What was not done, as a short sentence without a full stop."""
-    reason: str
+    reason: Message
     """Why, with the figures, as a clause without a full stop."""
     resource: str
     """What ran short: a value of `mintpilot.core.plan.Shortage`, or ``ended`` where the mission ended before it."""
@@ -297,7 +298,7 @@ def left_of(undone: LeftUndone) -> Left:
     """What a plan leaves undone, as it is told."""
     return Left(
         n=undone.stop.step,
-        text=undone.stop.text or undone.stop.id,
+        text=undone.stop.said,
         reason=undone.reason,
         resource=undone.resource.value,
         needed_s=undone.needed_s,
@@ -320,7 +321,7 @@ class Looked:
 
     n: int
     """Number of its step."""
-    text: str
+    text: Message
     """The step, as a short sentence without a full stop."""
     result: Sight
     what: str = ""
@@ -348,7 +349,7 @@ class Verdict:
     """What really happened, as the simulator saw it; on a real vehicle, as far as it is known."""
 
     outcome: Outcome
-    reason: str
+    reason: Message
     """One plain sentence."""
     achieved: tuple[Achieved, ...] = ()
     """What was done, in order."""

@@ -12,6 +12,7 @@ import numpy as np
 from mintpilot.core.errors import MissionError
 from mintpilot.core.gap import Assumptions, KnowledgeGap
 from mintpilot.core.geometry import Floats, Vec3, frozen
+from mintpilot.core.message import NOTHING, Message, message, verbatim
 from mintpilot.core.rule import Ruling
 from mintpilot.core.semantic_map import SemanticMap
 from mintpilot.core.task import Action
@@ -86,12 +87,17 @@ class Stop:
     """What leaving it undone costs where it is needed, seconds of flight."""
     step: int = 0
     """Number of the step of the task that it belongs to; 0: none."""
-    text: str = ""
+    text: Message = NOTHING
     """What is done there, as a short sentence without a full stop."""
     chance: float = 1.0
     """Probability that an optional stop is needed, as believed when the problem was framed."""
     informs: bool = False
     """True where it is done to know more: what follows is decided after it."""
+
+    @property
+    def said(self) -> Message:
+        """What is done there; where nothing says it, the stop's id."""
+        return self.text or verbatim(self.id)
 
     def __post_init__(self) -> None:
         if not 0 <= self.price_s < math.inf:
@@ -150,25 +156,31 @@ class LeftUndone:
     """Words of the rules that do not allow it."""
 
     @property
-    def reason(self) -> str:
+    def reason(self) -> Message:
         """Why, with the figures, as a clause without a full stop."""
         match self.resource:
             case Shortage.BATTERY:
                 needed, given = _seconds(self.needed_s or 0.0, self.available_s or 0.0)
-                return f"the way there needs {needed} s, the battery gives {given} s"
+                return message(
+                    "the way there needs {needed_s} s, the battery gives {given_s} s", needed_s=needed, given_s=given
+                )
             case Shortage.PRICE:
                 needed, given = _seconds(self.needed_s or 0.0, self.available_s or 0.0)
-                return f"the way there needs {needed} s, and leaving it undone counts for {given} s"
+                return message(
+                    "the way there needs {needed_s} s, and leaving it undone counts for {given_s} s",
+                    needed_s=needed,
+                    given_s=given,
+                )
             case Shortage.WAY:
-                return "no way there is known to be safe"
+                return message("no way there is known to be safe")
             case Shortage.THING:
-                return "what it needs is not picked up"
+                return message("what it needs is not picked up")
             case Shortage.ANSWER:
-                return "which one is meant is not known"
+                return message("which one is meant is not known")
             case Shortage.UNSEEN:
-                return "it is none of the things that were seen"
+                return message("it is none of the things that were seen")
             case Shortage.RULE:
-                return f"it cannot be done while this is kept: {'; '.join(self.rules)}"
+                return message("it cannot be done while this is kept: {rules}", rules="; ".join(self.rules))
 
 
 def _seconds(needed: float, given: float) -> tuple[str, str]:

@@ -14,6 +14,7 @@ from mintpilot.core.events import Event
 from mintpilot.core.gap import Assumptions, Belief, KnowledgeGap
 from mintpilot.core.geometry import Floats, Ints, SmallInts
 from mintpilot.core.inputs import OperatorInput, VehicleInput
+from mintpilot.core.message import Message
 from mintpilot.core.mission import AskingSettings, Verdict
 from mintpilot.core.motion import Motion
 from mintpilot.core.observation import Detection, Frame, NameGuess, RawFrame, Segment
@@ -127,7 +128,7 @@ class PlanSpace(Protocol):
         ...
 
     @property
-    def notes(self) -> tuple[str, ...]:
+    def notes(self) -> tuple[Message, ...]:
         """What a bound on the work left out so far, in plain sentences; empty when every plan is the best one."""
         ...
 
@@ -300,7 +301,7 @@ class Fly:
     """True only for baselines that fly through what is not known passable; refused outside a simulator."""
     proposed: tuple[ScoredQuery, ...] = ()
     """As in `Ask`, where proposals were looked at and none was worth asking."""
-    notices: tuple[str, ...] = ()
+    notices: tuple[Message, ...] = ()
     """What the person should know of how this was decided, e.g. which bound on the work was met, in plain sentences."""
 
 
@@ -342,7 +343,7 @@ class Operator(Protocol):
         ...
 
     def tell(self, text: str) -> None:
-        """Shows or says something that needs no answer."""
+        """Shows or says something that needs no answer, in the mission's language."""
         ...
 
     def poll(self, time_s: float) -> tuple[OperatorInput, ...]:

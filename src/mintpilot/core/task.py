@@ -9,6 +9,7 @@ from enum import StrEnum
 
 from mintpilot.core.errors import MissionError
 from mintpilot.core.geometry import Vec3
+from mintpilot.core.message import Message, Named, joined, message
 from mintpilot.core.observation import Attribute, RegionKind
 from mintpilot.core.rule import Rule
 
@@ -109,7 +110,7 @@ class Step:
     """What it is about; empty where the place says it all."""
     place: str
     """Where; empty where the target says it."""
-    text: str
+    text: Message
     """The step as one short sentence without a full stop: ``bring the bottle to the injured person``."""
 
 
@@ -140,7 +141,7 @@ class Task:
         done = [g for g in self.subgoals if not (self.seeks_people and _is_anybody(g))]
         found = [_step(n, subgoal) for n, subgoal in enumerate(done, start=1)]
         if self.seeks_people:
-            text = "look for everybody who needs help"
+            text = message("look for everybody who needs help")
             found.append(Step(n=len(found) + 1, action="seek", target="everybody who needs help", place="", text=text))
         return tuple(found)
 
@@ -164,37 +165,61 @@ class Task:
         return (*kinds, *(f"{_bare(k.reference.phrase)} ({k.distance_m:g} m)" for k in self.keep_away))
 
 
-def step_lines(task: Task) -> Iterator[str]:
+def step_lines(task: Task) -> Iterator[Message]:
     """The steps and what is stayed out of, line by line, to be shown before anything is flown."""
     for step in task.steps:
-        yield f"{step.n} {step.text}"
+        yield message("{n} {step}", n=step.n, step=step.text)
     if task.slowly:
-        yield "the whole flight slowly"
+        yield message("the whole flight slowly")
     if task.wishes:
-        yield f"keep out of: {', '.join(task.wishes)}"
+        kinds = [message("{kind}, if possible", kind=Named(kind)) for kind in task.avoid]
+        near = [
+            message("{kind} ({distance_m:g} m)", kind=Named(_bare(k.reference.phrase)), distance_m=k.distance_m)
+            for k in task.keep_away
+        ]
+        yield message("keep out of: {kinds}", kinds=joined([*kinds, *near], ", "))
     for rule in task.rules:
-        yield f"rule: {rule.text}"
+        yield message("rule: {rule}", rule=rule.text)
 
 
 def _step(n: int, goal: SubGoal) -> Step:
     place = goal.reference.phrase
     thing = goal.thing.phrase if goal.thing is not None else ""
-    text = {
-        Action.GO: f"go to {place}",
-        Action.PICK: f"pick up {thing} from {place}" if thing else f"pick up {place}",
-        Action.DELIVER: f"bring {thing or 'what is carried'} to {place}",
-        Action.LOOK: f"look into {place} for {thing}" if thing else f"look into {place}",
-        Action.COUNT: f"count {thing} in {place}" if thing else f"count {place}",
-        Action.PHOTOGRAPH: f"photograph {place}",
-        Action.REPORT: f"report what is seen at {place}",
-    }[goal.action]
+    text = what_is_done(goal.action, place, thing)
     if goal.height_m is not None:
-        text += f", at a height of {goal.height_m:g} m"
+        text = message("{step}, at a height of {height_m:g} m", step=text, height_m=goal.height_m)
     if goal.dwell_s != DWELL_S:
-        text += f", stay there for {goal.dwell_s:g} s"
+        text = message("{step}, stay there for {dwell_s:g} s", step=text, dwell_s=goal.dwell_s)
     at_place = bool(thing) or goal.action in (Action.LOOK, Action.REPORT, Action.DELIVER)
     return Step(n=n, action=str(goal.action), target=thing if at_place else place, place=place if at_place else "",
                 text=text)  # fmt: skip
+
+
+def what_is_done(action: Action, place: str, thing: str = "") -> Message:
+    """One step in words: ``bring the bottle to the injured person``."""
+    at, what = Named(place), Named(thing)
+    match action, bool(thing):
+        case Action.GO, _:
+            return message("go to {place}", place=at)
+        case Action.PICK, True:
+            return message("pick up {thing} from {place}", thing=what, place=at)
+        case Action.PICK, False:
+            return message("pick up {place}", place=at)
+        case Action.DELIVER, True:
+            return message("bring {thing} to {place}", thing=what, place=at)
+        case Action.DELIVER, False:
+            return message("bring what is carried to {place}", place=at)
+        case Action.LOOK, True:
+            return message("look into {place} for {thing}", place=at, thing=what)
+        case Action.LOOK, False:
+            return message("look into {place}", place=at)
+        case Action.COUNT, True:
+            return message("count {thing} in {place}", thing=what, place=at)
+        case Action.COUNT, False:
+            return message("count {place}", place=at)
+        case Action.PHOTOGRAPH, _:
+            return message("photograph {place}", place=at)
+    return message("report what is seen at {place}", place=at)
 
 
 def _is_anybody(goal: SubGoal) -> bool:

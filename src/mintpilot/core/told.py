@@ -8,6 +8,7 @@ from enum import StrEnum
 from typing import TypeAlias
 
 from mintpilot.core.errors import InputError
+from mintpilot.core.message import NOTHING, Message
 
 MOST_CORNERS = 64
 """Corners of a drawn region."""
@@ -94,7 +95,7 @@ class ToldFact:
     told_s: float
     """Mission clock."""
     standing: Standing
-    why: str = ""
+    why: Message = NOTHING
     """Of one that was refused."""
 
     @property

@@ -9,6 +9,7 @@ import numpy as np
 
 from mintpilot.core.gap import Assumptions, Joint
 from mintpilot.core.geometry import Ints, frozen
+from mintpilot.core.message import NOTHING, Message
 from mintpilot.core.plan import Plan
 from mintpilot.core.query import YES_PART, Query
 
@@ -154,7 +155,7 @@ class Certificate:
     bound_s: float
     """Largest cost of the chosen plan above the best one, over the hypotheses still above the floor, seconds; infinite
     where the chosen plan may fail or nothing is flown though something might have been."""
-    text: str
+    text: Message
     """The same in one plain sentence."""
     mass_outside: float = 0.0
     """Probability that the chosen plan fails, or is dearer than the best one by more than ``delta_c_s``."""
@@ -171,11 +172,11 @@ class GapExplanation:
     """Whether the operator was asked about it."""
     relevant: bool
     """Whether any best plan depends on it."""
-    why: str
+    why: Message
     """One plain sentence with the figures that decided."""
-    figures: str = ""
+    figures: Message = NOTHING
     """What hangs on it, as a clause; empty where nothing can be flown whatever it is."""
-    set_aside: str = ""
+    set_aside: Message = NOTHING
     """Why it was left alone where no plan depends on it; follows the figures."""
     cost_if_favourable_s: float | None = None
     """Cost of the best plan if the gap has its best value (for obstacle gaps: passable), seconds."""

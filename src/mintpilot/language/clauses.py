@@ -165,5 +165,10 @@ def is_person(reference: Reference) -> bool:
     return reference.label == PERSON or reference.label in lexicon.ROLES
 
 
+def is_alive(reference: Reference) -> bool:
+    """Whether it means a person or an animal."""
+    return is_person(reference) or reference.label in lexicon.ANIMALS
+
+
 def _listed(references: list[Reference]) -> str:
     return " or ".join(f"'{r.phrase}'" for r in references)

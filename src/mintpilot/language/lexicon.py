@@ -56,7 +56,8 @@ ADJECTIVES: dict[str, tuple[str, str]] = {
 
 PLAIN_ADJECTIVES = word_set(
     "old new young heavy light thick thin short wide narrow open closed locked broken empty full fallen overturned "
-    "burning smoking missing lost abandoned main front back rear north south east west northern southern eastern "
+    "burning smoking leaking collapsed flooded "
+    "elderly spare thermal missing lost abandoned main front back rear north south east west northern southern eastern "
     "western upper lower middle dark bright rusty dirty clean wet dry warm cold hot steel iron glass paper leather "
     "rubber marked restricted sealed damaged first-aid emergency far"
 )
@@ -65,7 +66,7 @@ PLAIN_ADJECTIVES = word_set(
 PEOPLE = word_set(
     "person people victim victims survivor survivors casualty casualties patient patients human humans man woman child "
     "men women children worker workers colleague firefighter firefighters guard guards guy guys lady girl boy kid kids "
-    "hiker climber diver driver swimmer soldier tourist visitor pedestrian crowd baby"
+    "hiker climber skier miner diver driver swimmer soldier tourist visitor pedestrian crowd baby"
 )
 """Nouns that mean the label ``person``."""
 ANYBODY = word_set("anyone anybody someone somebody everyone everybody")
@@ -79,6 +80,8 @@ ROOM_KINDS = word_set(
     "attic lobby closet pantry library laundry foyer cafeteria restroom studio offices bathrooms bedrooms cupboard"
 )
 """Rooms that are called by what they are for."""
+ENCLOSED = word_set("tent shed hut house cabin barn stairwell lift gym corridor hallway")
+"""Things that are looked into like rooms."""
 ROOM_WORDS = word_set("storage server meeting living dining control engine boiler waiting conference equipment guest")
 """What stands before ``room``."""
 
@@ -87,6 +90,9 @@ VENUES = word_set("warehouse building hall hangar house factory area zone place 
 CLOTHES = word_set("helmet mask jacket shirt vest hat coat glasses gloves uniform")
 SURFACES = word_set("table desk shelf rack counter floor ground bench chair bed sofa stand roof pallet")
 """From these a thing is taken that stands on them; out of anything else, what it holds."""
+
+ANIMALS = word_set("dog cat horse cow sheep bird goat pig donkey rabbit")
+"""Gone to and photographed like things, and never carried or laid upon."""
 
 NOUNS = word_set(
     # containers and goods
@@ -100,6 +106,8 @@ NOUNS = word_set(
     "tool toolbox hammer wrench screwdriver drill saw rope cable hose pipe valve pump generator motor machine battery "
     "charger torch flashlight lantern radio phone camera helmet mask glove gloves vest jacket shirt hat coat shoe "
     "extinguisher fire flames smoke kit medicine medication bandage blanket stretcher splint syringe defibrillator "
+    "beacon sensor probe medkit lifebuoy tourniquet shovel axe crowbar wheelchair crutch gauge meter insulin oxygen "
+    "inhaler vaccine serum tarp megaphone walkie-talkie drum ring life gas pressure fuse sample "
     "flare whistle map key keys wallet glasses book pen pencil paper folder document letter card ball toy umbrella "
     "towel "
     # food and drink
@@ -107,17 +115,17 @@ NOUNS = word_set(
     "chips snack drink juice milk coffee tea soda coke cola beer egg cheese rice sponge soap spoon fork knife "
     # vehicles and outdoors
     "car truck van bus bicycle bike motorcycle ambulance forklift tractor excavator crane boat ship plane helicopter "
-    "tree bush rock stone river lake bridge road path tower antenna mast chimney house tent hut shed pier pole "
+    "tree bush rock stone river lake bridge road path tower antenna mast chimney house tent hut shed "
+    "cabin barn lift gym hallway silo ridge cliff pier pole "
     "flag cone barrier hydrant pylon statue field garden yard street corner entrance exit dock loading parking point "
     "assembly panel switch station landing control end "
-    # animals
-    "dog cat horse cow sheep bird goat "
-)  # fmt: skip
+) | ANIMALS  # fmt: skip
 """Nouns, and what stands before nouns in compounds: ``fire extinguisher``, ``loading dock``."""
 
 FIXED = word_set(
     "door gate doorway window wall floor ceiling roof stairs staircase stairwell pillar column corridor "
-    "platform ramp road  path bridge tower antenna mast chimney house tent hut shed pier river lake field "
+    "platform ramp road  path bridge tower antenna mast chimney house tent hut shed cabin barn lift gym "
+    "hallway silo ridge cliff pier river lake field "
     "garden yard street corner entrance  exit dock point station fountain fence statue elevator car truck van "
     "bus ambulance forklift tractor excavator crane  boat ship plane helicopter tree smoke fire flames end way "
     "route lift line side "
@@ -166,8 +174,11 @@ _REASONS = {
     "it names a choice: say which one is meant": "or either neither nor whichever any",
     "it points at something that was not said here": "same previous former latter remaining wrong correct",
     "negations are only understood for what is to be stayed out of": (
-        "not no never none nothing without nobody don't doesn't isn't aren't won't can't cannot didn't wasn't "
+        "not no never none nothing nobody don't doesn't isn't aren't won't can't cannot didn't wasn't "
         "shouldn't mustn't ain't"
+    ),
+    "only what is to be stayed out of is said with it; say what becomes of the thing, as in 'put it on the table'": (
+        "without"
     ),
     "repetitions are not understood": "again twice thrice times repeat repeatedly once-more another",
     "time limits and times are not understood": (

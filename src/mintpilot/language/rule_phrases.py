@@ -106,7 +106,7 @@ def _name(reference: Reference) -> str:
 
 
 def _said(goal: SubGoal) -> str:
-    return Task(instruction="", subgoals=(goal,)).steps[0].text
+    return str(Task(instruction="", subgoals=(goal,)).steps[0].text)
 
 
 def _add(reading: Reading, text: str, rule: Rule) -> None:

@@ -6,9 +6,10 @@ from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import replace
 
+from mintpilot.core.observation import Attribute
 from mintpilot.core.task import Reference
 from mintpilot.language import lexicon, verbs
-from mintpilot.language.clauses import ROOM, Reading, is_person
+from mintpilot.language.clauses import ROOM, Reading, is_alive, is_person
 from mintpilot.language.grammar import Found, Slot
 from mintpilot.language.phrases import Unread, Words, noun_phrase, refuse
 
@@ -53,9 +54,11 @@ def _goal(reading: Reading, found: Found) -> None:
     elif words.take("there", "over there"):
         found.goal = reading.meant("there")
     else:
-        words.need("to", "over to", "onto", "up to")
+        said = words.need("to", "over to", "onto", "up to")
         _no_speaker(words)
         found.goal = reading.phrase()
+        if said == "onto" and is_alive(found.goal):
+            refuse(said, f"{found.goal.phrase}: nothing is put on somebody; say 'bring it to {found.goal.phrase}'")
 
 
 def _no_speaker(words: Words) -> None:
@@ -73,7 +76,8 @@ def _source(reading: Reading, found: Found) -> None:
 
 def _rooms(reading: Reading, found: Found) -> None:
     """A list of rooms."""
-    rooms = [_door_room(reading.words)] if reading.words.next() == "behind" else list(reading.phrases())
+    behind = reading.words.next() == "behind"
+    rooms = [_door_room(reading.words)] if behind else [_enclosed(one) for one in reading.phrases()]
     if any(room.label != ROOM for room in rooms):
         reading.words.fail()
     found.rooms += rooms
@@ -85,10 +89,18 @@ def _room(reading: Reading, found: Found) -> None:
         found.rooms.append(_door_room(reading.words))
         return
     reading.words.need("in", "inside", "into")
-    room = reading.phrase()
+    room = _enclosed(reading.phrase())
     if room.label != ROOM:
         reading.words.fail()
     found.rooms.append(room)
+
+
+def _enclosed(reference: Reference) -> Reference:
+    """What can be looked into, as a room of that kind; all else as it is."""
+    if reference.label not in lexicon.ENCLOSED:
+        return reference
+    kind = Attribute(name="kind", value=reference.label)
+    return replace(reference, label=ROOM, attributes=(kind, *reference.attributes))
 
 
 def _door_room(words: Words) -> Reference:

@@ -6,8 +6,8 @@ from dataclasses import replace
 
 from mintpilot.core.observation import Attribute, RegionKind
 from mintpilot.core.task import KEEP_AWAY_M, Action, KeepAway, Reference
-from mintpilot.language import lexicon
-from mintpilot.language.clauses import ROOM, Reading, is_person
+from mintpilot.language import lexicon, verbs
+from mintpilot.language.clauses import ROOM, Reading, is_alive, is_person
 from mintpilot.language.grammar import Found
 from mintpilot.language.phrases import refuse
 from mintpilot.language.rule_phrases import names_region, never_enter
@@ -90,6 +90,9 @@ def look(reading: Reading, found: Found) -> None:
     thing = found.things[0] if found.things else None
     if thing is not None and thing.label == ROOM:
         reading.words.fail()
+    outside = thing is None and found.said.get("LOOK_INTO") in verbs.VISIT
+    if outside and any(a.value in lexicon.ENCLOSED for room in found.rooms for a in room.attributes):
+        reading.words.fail()  # inspect the tent: from outside
     for room in found.rooms:
         reading.add(Action.LOOK, room, thing)
 
@@ -145,6 +148,8 @@ def wait(reading: Reading, found: Found) -> None:
         reading.add(Action.GO, found.things[0])
     elif not reading.subgoals:
         reading.add(Action.GO, reading.home())
+    if found.said.get("OVER") in ("near", "next to", "by") and found.dwell_s is None:
+        refuse(found.said["OVER"], "without a time says how to fly, not where to: say 'go to …, stay there for 10 s'")
     _how(reading, found)
 
 
@@ -165,7 +170,14 @@ def bring(reading: Reading, found: Found) -> None:
 def drop(reading: Reading, found: Found) -> None:
     """``put the key on the table``, ``… there``."""
     goal = found.things.pop() if len(found.things) > 1 else reading.meant("there")
+    upon(found.said.get("UPON", "") or ("at" if found.said.get("AT") == "at" else ""), goal)
     bring(reading, replace(found, goal=goal))
+
+
+def upon(said: str, goal: Reference) -> None:
+    """What is put on, into or at something: that is a place. Raises `InstructionError` for somebody, or an animal."""
+    if said and (is_alive(goal) or goal.every):
+        refuse(said, f"{goal.phrase}: nothing is put on somebody, or thrown; say 'bring it to {goal.phrase}'")
 
 
 def needed(reading: Reading, found: Found) -> None:
@@ -178,7 +190,7 @@ def needed(reading: Reading, found: Found) -> None:
 def pick(reading: Reading, found: Found) -> None:
     """A thing, from what it stands on or out of what holds it."""
     (thing,), source = found.things, found.source
-    if is_person(thing) or thing.label == ROOM or thing.label in lexicon.FIXED:
+    if is_alive(thing) or thing.label == ROOM or thing.label in lexicon.FIXED:
         refuse(thing.phrase, "cannot be picked up or carried: the drone brings things to people")
     if reading.carried is not None:
         refuse(thing.phrase, f"cannot be picked up while '{reading.carried.phrase}' is carried: one by one")

@@ -18,11 +18,12 @@ GO = _phrases(
 TO = _phrases("""to | towards | toward | over to | up to | back to | over""")
 FIND = _phrases(
     """find | locate | search for | look for | seek | track down | go and find | go find | go look for | go and look
-    for | have a look for | go and search for | go and locate"""
+    for | have a look for | go and search for | go and locate | we are looking for |
+    we're looking for | i am looking for"""
 )
 VISIT = _phrases(
     """approach | visit | reach | check | check on | inspect | examine | look at | have a look at | take a look at | go
-    and check | go and inspect"""
+    and check | go and inspect | head for"""
 )
 LOOK_INTO = _phrases(
     """look into | look in | look inside | peek into | check inside | have a look into | take a look into | have a look
@@ -34,7 +35,8 @@ BRING = _phrases(
     """bring | take | carry | deliver | transport | give | hand | get | fetch | return | move | hand over | fly"""
 )
 DROP = _phrases("""drop | put | place | leave | set down | put down | drop off | unload | lay""")
-AT = _phrases("""at | on | onto | in | into | next to | near | by | beside | in front of | to | on top of""")
+AT = _phrases("""at | next to | near | by | beside | in front of | to""")
+UPON = _phrases("""on | onto | in | into | on top of""")
 STARTS = _phrases(
     """the start | the start position | the starting point | the home position | base | the base | launch | the launch
     point | the take off point | start | home | the pad | where you started"""
@@ -51,7 +53,7 @@ HELP = _phrases(
     """who needs help | needing help | in need of help | needs help | who need help | need help | who is hurt | who is
     injured | who is trapped | who might be hurt | who may be hurt | who are hurt | who are injured | who is wounded"""
 )
-SEEN = _phrases("""what you see | what you can see | what is there | what's there | what is visible""")
+SEEN = _phrases("""what you see | what you can see | what is there | what's there | what is visible | the situation""")
 WISH = _phrases("""if possible | if you can | where possible | when possible | wherever possible | if it is possible""")
 ENTER = _phrases(
     """go through | fly through | pass through | go into | fly into | enter | cross | go near | fly near | come near |
@@ -70,7 +72,7 @@ RISE = tuple(f"{verb} {up}" for verb in ("go", "fly", "move", "climb", "rise") f
 LOOKS = _phrases("what do you see | what can you see | what is there")
 TELL = _phrases("report | tell me | describe | say | tell us | and report")
 AROUND = _phrases("at | near | by | next to | around")
-HOW_MANY = _phrases("how many | tell me how many | report how many")
+HOW_MANY = _phrases("how many | tell me how many | report how many | find out how many | i need to know how many")
 ARE = _phrases("are there | there are | do you see | can you see | you see | are")
 HOLD = _phrases("wait | hover | stay | hold | remain | hold position")
 OVER = _phrases("at | over | above | near | next to | by")
@@ -96,7 +98,7 @@ SOMEBODY = tuple(
 EVERYBODY = (*SOMEBODY, "everyone", "everybody", "everyone else", "everybody else")
 PICTURE = tuple(
     f"{verb} {me}{one}{picture}"
-    for verb in ("take", "make", "get", "snap", "shoot")
+    for verb in ("take", "make", "get", "snap", "shoot", "show", "send", "we need", "i need")
     for me in ("", "me ", "us ")
     for one in ("a ", "", "some ")
     for picture in _phrases("picture | photo | photograph | image | snapshot | pictures | photos | photographs")
@@ -113,7 +115,7 @@ POLITE = _phrases(
     mission is to | mission | task | make sure to | be sure to | you should | you must | we need you to | go and |
     make sure you | be sure you"""
 )
-AFTERTHOUGHTS = _phrases("""please | too | as well | thanks | thank you | , in that order | in that order""")
+AFTERTHOUGHTS = _phrases("""please | too | now | as well | thanks | thank you | , in that order | in that order""")
 _GOING = word_set(
     """going flying visiting finding checking picking bringing taking looking searching carrying moving reaching
     photographing counting delivering inspecting heading"""

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 from mintpilot.core.decisions import AskQuestion, Reasoning
 from mintpilot.core.inputs import Answered, MoreTimeWanted, QuestionReworded, QuestionShown
+from mintpilot.core.message import message
 from mintpilot.core.query import Answer, Query, Reply, Standing
 from mintpilot.mission import meanwhile
 from mintpilot.mission.belief_state import BeliefState, confirmed_by, update
@@ -33,7 +34,7 @@ def take_over(t: Transition, reasoning: Reasoning) -> None:
     for bound in reasoning.left_out:
         if bound not in t.state.notes:
             t.set(notes=t.state.notes | {bound})
-            t.note("bound", f"A bound on the work was reached: {bound}.")
+            t.note("bound", message("A bound on the work was reached: {bound}.", bound=bound))
 
 
 def put(t: Transition, decision: AskQuestion, begun_s: float) -> None:
@@ -100,7 +101,7 @@ def answered(t: Transition, event: Answered) -> None:
         if open_.read_backs >= MAX_READ_BACKS:
             _learn(t, open_, replace(answer, reply=Reply.UNSURE, option=None))
             meanwhile.over(t, open_, Reply.UNSURE)
-            t.withdraw("no answer was confirmed")
+            t.withdraw(message("no answer was confirmed"))
             return
         read_back = replace(open_.question, read_back=replace(answer, standing=Standing.UNCONFIRMED))
         t.set(question=replace(open_, question=read_back, read_backs=open_.read_backs + 1))
@@ -108,7 +109,7 @@ def answered(t: Transition, event: Answered) -> None:
         return
     _learn(t, open_, answer)
     meanwhile.over(t, open_, answer.reply)
-    t.withdraw("it was answered")
+    t.withdraw(message("it was answered"))
 
 
 def more_time(t: Transition, event: MoreTimeWanted) -> None:
@@ -117,14 +118,17 @@ def more_time(t: Transition, event: MoreTimeWanted) -> None:
     if open_ is None or open_.question.id != event.question:
         return
     if open_.extended:
-        t.tell("I cannot wait any longer than that.")
+        t.tell(message("I cannot wait any longer than that."))
         return
     longer = replace(
         open_, extended=True, patient_until_s=open_.patient_until_s + t.state.setup.mission.asking.patience_s
     )
     more_s = longer.deadline_s - open_.deadline_s
     t.set(question=longer)
-    t.tell(f"I wait {more_s:.0f} s more." if more_s > 0 else "I cannot wait longer: the battery does not allow it.")
+    if more_s > 0:
+        t.tell(message("I wait {more_s:.0f} s more.", more_s=more_s))
+    else:
+        t.tell(message("I cannot wait longer: the battery does not allow it."))
 
 
 def unanswered(t: Transition) -> None:
@@ -133,8 +137,8 @@ def unanswered(t: Transition) -> None:
     assert open_ is not None
     _learn(t, open_, Answer(reply=Reply.TIMEOUT, latency_s=_waited_s(t, open_)))
     meanwhile.over(t, open_, Reply.TIMEOUT)
-    t.withdraw("no answer came in time")
-    t.note("silence", "No answer came: the drone takes the way that is safe whatever holds.")
+    t.withdraw(message("no answer came in time"))
+    t.note("silence", message("No answer came: the drone takes the way that is safe whatever holds."))
 
 
 def somebody_spoke(t: Transition) -> None:
@@ -163,9 +167,10 @@ def check_permissions(t: Transition) -> None:
     t.set(beliefs=after, fallback=None)
     lost = permissions(before, settings).enter - permissions(after, settings).enter
     if lost:
-        t.note("permission", "What was permitted is too long ago, or has changed since: it is asked about again.")
+        again = message("What was permitted is too long ago, or has changed since: it is asked about again.")
+        t.note("permission", again)
         if t.state.goal is Goal.TASK:
-            t.withdraw("what was permitted has changed")
+            t.withdraw(message("what was permitted has changed"))
             t.set(request=None)
         t.brake()
 
@@ -185,9 +190,15 @@ def _learn(t: Transition, open_: OpenQuestion, answer: Answer) -> None:
     t.set(beliefs=after, learnt=answer)
     check_permissions(t)
     if result.contradiction:
-        t.note("contradiction", f"The answer to '{text}' goes against an earlier one; it was not taken over.")
+        against = message(
+            "The answer to '{question}' goes against an earlier one; it was not taken over.", question=text
+        )
+        t.note("contradiction", against)
     elif result.extra_refused:
-        t.note("contradiction", f"What was said beyond '{text}' goes against what is known; the rest was taken over.")
+        beyond = message(
+            "What was said beyond '{question}' goes against what is known; the rest was taken over.", question=text
+        )
+        t.note("contradiction", beyond)
 
 
 def _late(t: Transition, event: Answered) -> None:
@@ -195,24 +206,27 @@ def _late(t: Transition, event: Answered) -> None:
     query = dict(t.state.earlier).get(event.question)
     said = event.answer.text or event.answer.reply.value
     if query is None or t.state.beliefs is None or event.answer.part is None:
-        t.note("late-answer", f"'{said}' came when nothing was asked; it changed nothing.")
+        t.note("late-answer", message("'{said}' came when nothing was asked; it changed nothing.", said=said))
         return
     before, settings = t.beliefs, t.state.setup.mission.asking
     after, against = _after_late(before, query, event.answer, event.answer.part, t)
     if enlarges(before, after, settings):
-        t.note("late-answer", f"'{said}' came too late; it would have taken caution away, and was ignored.")
+        freeing = message("'{said}' came too late; it would have taken caution away, and was ignored.", said=said)
+        t.note("late-answer", freeing)
         return
     is_same = permissions(after, settings) == permissions(before, settings)
     if against and is_same:
-        t.note("late-answer", f"'{said}' came too late; it goes against what was said before, and was ignored.")
+        contrary = message("'{said}' came too late; it goes against what was said before, and was ignored.", said=said)
+        t.note("late-answer", contrary)
         return
     t.set(beliefs=replace(after, silent=False))
     if is_same:
-        t.note("late-answer", f"'{said}' came late and was taken over.")
+        t.note("late-answer", message("'{said}' came late and was taken over.", said=said))
         return
-    t.note("late-answer", f"'{said}' came late; it adds caution: the drone stops and deliberates again.")
-    t.tell("I take that back: I stop and think again.")
-    t.withdraw("an earlier answer was taken back")
+    careful = message("'{said}' came late; it adds caution: the drone stops and deliberates again.", said=said)
+    t.note("late-answer", careful)
+    t.tell(message("I take that back: I stop and think again."))
+    t.withdraw(message("an earlier answer was taken back"))
     t.set(request=None)
     if t.state.goal is Goal.TASK:
         t.brake()

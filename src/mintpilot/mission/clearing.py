@@ -7,10 +7,12 @@ from typing import Final
 
 from mintpilot.core.briefing import Briefing
 from mintpilot.core.inputs import Answered, Link, LinkChanged, Ordered
+from mintpilot.core.message import Message, joined, message, verbatim
 from mintpilot.core.mission import Outcome
 from mintpilot.core.query import Order, Reply, Standing
 from mintpilot.core.tree import ScoredQuery
 from mintpilot.mission.directives import ShowQuestion
+from mintpilot.mission.ordering import LINKS
 from mintpilot.mission.state import OpenQuestion
 from mintpilot.mission.transition import Transition
 
@@ -47,17 +49,18 @@ def answered(t: Transition, event: Answered) -> None:
         return
     answer, pending = event.answer, open_.question.read_back
     if answer.reply is not Reply.YES:
-        _stay(t, "The operator did not say go.")
+        _stay(t, message("The operator did not say go."))
         return
     confirmed = answer.standing is Standing.CONFIRMED and pending is not None and pending.reply is Reply.YES
     plain = answer.standing is Standing.PLAIN and answer.by != "voice" and answer.understood_by != "model"
     if confirmed or plain:
-        t.note("go", f"{event.operator or 'The operator'} said go.")
-        t.withdraw("it was answered")
+        who = event.operator
+        t.note("go", message("{who} said go.", who=who) if who else message("The operator said go."))
+        t.withdraw(message("it was answered"))
         t.set(grounded=False)
         t.climb()
     elif open_.read_backs >= MAX_READ_BACKS:
-        _stay(t, "No go was confirmed.")
+        _stay(t, message("No go was confirmed."))
     else:
         read_back = replace(open_.question, read_back=replace(answer, standing=Standing.UNCONFIRMED))
         t.set(question=replace(open_, question=read_back, read_backs=open_.read_backs + 1))
@@ -67,21 +70,22 @@ def answered(t: Transition, event: Answered) -> None:
 def ordered(t: Transition, event: Ordered) -> None:
     """On the ground every order but to wait ends the mission there."""
     if event.order in (Order.HOLD, Order.CONTINUE):
-        t.tell("I stand on the ground and wait for your yes.")
+        t.tell(message("I stand on the ground and wait for your yes."))
     else:
-        _stay(t, "The operator called the mission off.")
+        _stay(t, message("The operator called the mission off."))
 
 
 def link_lost(t: Transition, event: LinkChanged) -> None:
     """What is missing before take-off is no reason to fly."""
-    _stay(t, f"The link '{event.link.value}' was lost before take-off{f' ({event.reason})' if event.reason else ''}.")
+    lost = message("The {link} was lost before take-off.", link=LINKS[event.link])
+    _stay(t, joined([lost, verbatim(f"({event.reason})" if event.reason else "")]))
 
 
 def unanswered(t: Transition) -> None:
     """Silence is no go."""
-    _stay(t, "No go was given in time.")
+    _stay(t, message("No go was given in time."))
 
 
-def _stay(t: Transition, why: str) -> None:
-    t.tell(f"{why} I stay on the ground.")
-    t.finish(Outcome.ABORTED, f"{why} The drone stayed on the ground.")
+def _stay(t: Transition, why: Message) -> None:
+    t.tell(joined([why, message("I stay on the ground.")]))
+    t.finish(Outcome.ABORTED, joined([why, message("The drone stayed on the ground.")]))

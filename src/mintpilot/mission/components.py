@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from mintpilot.core.briefing import Briefing
 from mintpilot.core.events import MissionStarted
+from mintpilot.core.message import NOTHING, Message
 from mintpilot.core.ports import Camera, Judge, Operator, Recorder, Vehicle
 from mintpilot.mission.deliberation import DeliberationParts
 from mintpilot.mission.map_source import MapSource
@@ -33,11 +34,13 @@ class MissionComponents:
     """Makes who works deliberations out."""
     begin_task: Callable[[], None] = _nothing
     """Called when the survey is over: a simulator brings a fresh battery."""
+    spoken: Callable[[Message], str] = str
+    """Puts what is told into the mission's language."""
     judge: Judge | None = None
     """In a simulator, says how it really went."""
     improve: Improve | None = None
     """Makes better words while the first ones are shown; None: nobody does."""
-    remarks: Callable[[], Sequence[str]] = tuple
+    remarks: Callable[[], Sequence[Message]] = tuple
     """What went wrong with the words since it was last called, in sentences."""
     surveys: bool = False
     """True where the first map is made by a survey flight."""
@@ -45,7 +48,7 @@ class MissionComponents:
     """True in a simulator only: baselines may then fly what is not known to be passable."""
     lands: bool = False
     """True for a real vehicle: however the mission ends, it returns if it can, and lands."""
-    begins_with: str = ""
+    begins_with: Message = NOTHING
     """Of a mission that begins with an earlier map: a sentence that says how old it is."""
     watch_map: bool = True
     """False where the map is given and nothing new can be seen."""

@@ -11,6 +11,7 @@ from mintpilot.core.decisions import AskQuestion, FlyPlan, NoPlan, Reasoning
 from mintpilot.core.errors import InfeasibleError
 from mintpilot.core.gap import PASSABLE, Assumptions, Belief, CorrelationGroup, GapKind, KnowledgeGap
 from mintpilot.core.geometry import Vec3
+from mintpilot.core.message import Message, joined, message
 from mintpilot.core.mission import AskingSettings, Mission, ReturnRule, WhileWaiting
 from mintpilot.core.plan import LeftUndone, PlanningProblem, Prospect
 from mintpilot.core.ports import (
@@ -88,15 +89,20 @@ class Deliberation:
     """All stops, where nothing is flown."""
 
     @property
-    def left_out(self) -> tuple[str, ...]:
+    def left_out(self) -> tuple[Message, ...]:
         """What bounds on the work left out, in plain sentences: plans stay safe, but may not be the best."""
         mint = self.decision.mint
         notes = self.situation.space.notes
         if isinstance(self.decision, Fly):
-            notes = (*notes, *(notice.rstrip(".") for notice in self.decision.notices))
+            notes = (*notes, *self.decision.notices)
         if mint is None or not mint.not_expanded:
             return notes
-        return (*notes, f"{mint.not_expanded} leaves of the tree were not expanded; they get the cautious plan")
+        return (
+            *notes,
+            message(
+                "{count} leaves of the tree were not expanded; they get the cautious plan", count=mint.not_expanded
+            ),
+        )
 
 
 def deliberate(state: BeliefState, parts: DeliberationParts, *, start_m: Vec3, endurance_s: float) -> Deliberation:
@@ -236,7 +242,7 @@ def mission_decision(
     try:
         found = deliberate(state, parts, start_m=start_m, endurance_s=endurance_s)
     except InfeasibleError as error:
-        return NoPlan(reason=str(error), left=_all_left(state, parts, start_m=start_m, endurance_s=endurance_s))
+        return NoPlan(reason=error.said, left=_all_left(state, parts, start_m=start_m, endurance_s=endurance_s))
     return decision_of(found, parts, explained)
 
 
@@ -260,7 +266,7 @@ def _framed(
         state = replace(state, map=known, belief=belief)
         findings, belief = _gaps_of(state, parts, start_m, honour_wishes)
     if findings.problems:
-        raise InfeasibleError(" ".join(findings.problems))
+        raise InfeasibleError(joined(findings.problems))
     state = replace(state, belief=belief)
     limits = replace(parts.mission.limits, endurance_s=max(endurance_s, LEAST_ENDURANCE_S))
     mission = parts.mission
@@ -306,7 +312,7 @@ def _deliberate(
     if isinstance(decision, Fly) and decision.plan is None:
         left = nothing_done(problem, parts.planner)
         certificate = decision.certificate
-        text = f"{certificate.text} {sentence(left)}".strip()
+        text = joined([certificate.text, sentence(left)])
         decision = replace(decision, certificate=replace(certificate, text=text))
     return Deliberation(state=state, findings=findings, situation=situation, decision=decision, left=left)
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 from mintpilot.core.geometry import Floats
+from mintpilot.core.message import Message
 from mintpilot.core.mission import Verdict
 from mintpilot.core.motion import Motion
 from mintpilot.core.query import Question
@@ -62,14 +63,14 @@ class WithdrawQuestion:
 
     question: str
     """Its id."""
-    why: str
+    why: Message
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Tell:
     """Say this to all operators."""
 
-    text: str
+    text: Message
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -78,7 +79,7 @@ class Note:
 
     kind: str
     """A short stable name, e.g. ``contradiction``."""
-    text: str
+    text: Message
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from mintpilot.core.gap import PASSABLE, Belief, GapKind, Joint, obstacle_id, presence_id
+from mintpilot.core.message import Message, message
 from mintpilot.core.mission import Mission
 from mintpilot.core.observation import RegionKind
 from mintpilot.core.predicate import Literal, Saying, SayingKind
@@ -43,7 +44,7 @@ class Applied:
     """Of the gap that it is about; None where it is about none."""
 
 
-def apply(fact: Fact, beliefs: BeliefState, shown: SemanticMap, mission: Mission, now_s: float) -> Applied | str:
+def apply(fact: Fact, beliefs: BeliefState, shown: SemanticMap, mission: Mission, now_s: float) -> Applied | Message:
     """The beliefs with a fact in them, or why it cannot be taken over.
 
     Args:
@@ -145,12 +146,12 @@ def subject_of(fact: Fact) -> str:
             return ""
 
 
-def _blocked(fact: RegionBlocked, beliefs: BeliefState) -> Applied | str:
+def _blocked(fact: RegionBlocked, beliefs: BeliefState) -> Applied | Message:
     region = _region(beliefs.map, fact.region)
-    if isinstance(region, str):
+    if isinstance(region, Message):
         return region
     if region.passable is Knowledge.NO:
-        return "it is stayed out of already"
+        return message("it is stayed out of already")
     gap = obstacle_id(region.id)
     after = replace(
         beliefs,
@@ -163,59 +164,61 @@ def _blocked(fact: RegionBlocked, beliefs: BeliefState) -> Applied | str:
 
 def _passable(
     fact: RegionPassable, beliefs: BeliefState, shown: SemanticMap, mission: Mission, now_s: float
-) -> Applied | str:
+) -> Applied | Message:
     region = _region(beliefs.map, fact.region)
-    if isinstance(region, str):
+    if isinstance(region, Message):
         return region
     gap, memory = obstacle_id(region.id), _memory(beliefs, obstacle_id(region.id))
     if region.passable is not Knowledge.OPEN:
-        return "it is known already" if region.passable is Knowledge.YES else "it was said that it must not be entered"
+        if region.passable is Knowledge.YES:
+            return message("it is known already")
+        return message("it was said that it must not be entered")
     alone = replace(beliefs.map, regions=(region,))
     found = obstacle_gaps(alone, things_of(beliefs.map), prior_passable=mission.prior_passable)
     if gap not in {known.id for known in beliefs.belief.gaps}:
         wider = extend(beliefs.belief, (*beliefs.belief.gaps, *found), max_joint=mission.asking.max_joint)
         beliefs = replace(beliefs, belief=wider)
     after = _learnt(beliefs, gap, PASSABLE, mission)
-    if isinstance(after, str):
+    if isinstance(after, Message):
         return after
     return Applied(beliefs=granted(after, frozenset({gap}), shown, now_s), memory=memory)
 
 
-def _searched(fact: RoomSearched, beliefs: BeliefState) -> Applied | str:
+def _searched(fact: RoomSearched, beliefs: BeliefState) -> Applied | Message:
     room = next((room for room in beliefs.map.rooms if room.id == fact.room), None)
     if room is None:
-        return "no such room is known"
+        return message("no such room is known")
     if room.searched or room.occupied is Knowledge.NO:
-        return "nobody needs to look into it any more"
+        return message("nobody needs to look into it any more")
     if room.occupied is Knowledge.YES:
-        return "it was said that somebody is inside"
+        return message("it was said that somebody is inside")
     memory = _memory(beliefs, presence_id(room.id))
     return Applied(beliefs=replace(beliefs, map=beliefs.map.with_room(room.id, searched=True)), memory=memory)
 
 
-def _this_one(fact: ThisOne, beliefs: BeliefState, mission: Mission) -> Applied | str:
+def _this_one(fact: ThisOne, beliefs: BeliefState, mission: Mission) -> Applied | Message:
     gaps = [gap for gap in beliefs.belief.gaps if gap.kind is GapKind.TARGET and fact.thing in gap.values]
     if len(gaps) != 1:
-        return "nothing in the task may mean it" if not gaps else "more than one step may mean it"
+        return message("more than one step may mean it") if gaps else message("nothing in the task may mean it")
     memory = _memory(beliefs, gaps[0].id)
     after = _learnt(beliefs, gaps[0].id, fact.thing, mission)
-    return after if isinstance(after, str) else Applied(beliefs=after, memory=memory)
+    return after if isinstance(after, Message) else Applied(beliefs=after, memory=memory)
 
 
-def _region(map: SemanticMap, name: str) -> Region | str:
+def _region(map: SemanticMap, name: str) -> Region | Message:
     found = next((region for region in map.regions if region.id == name), None)
     if found is None:
-        return "no such region is known"
-    return "it was drawn: take that back instead" if name.startswith(PREFIX) else found
+        return message("no such region is known")
+    return message("it was drawn: take that back instead") if name.startswith(PREFIX) else found
 
 
-def _learnt(beliefs: BeliefState, gap: str, value: str, mission: Mission) -> BeliefState | str:
+def _learnt(beliefs: BeliefState, gap: str, value: str, mission: Mission) -> BeliefState | Message:
     """As an answer that says so outright; it takes nothing off the budget of questions."""
     saying = Saying(kind=SayingKind.VALUE, value=value)
     query = Query(literals=(Literal(gap=gap, values=frozenset({value}), saying=saying),))
     result = update(beliefs, query, Answer(reply=Reply.YES, latency_s=0.0), mission.asking)
     if result.contradiction:
-        return "it goes against what was said before"
+        return message("it goes against what was said before")
     return replace(result.state, attempts=beliefs.attempts, withdrawn=beliefs.withdrawn)
 
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from mintpilot.core.decisions import FlyPlan, FlyTrajectory, GoBack, RefuseFlight
 from mintpilot.core.inputs import Link, MapObserved
+from mintpilot.core.message import Named, joined, message
 from mintpilot.core.mission import Achieved, Outcome, ReturnRule, Sight
 from mintpilot.core.plan import LeftUndone, Leg, Plan, Stop
 from mintpilot.core.task import Action
@@ -30,7 +31,14 @@ def fly_plan(t: Transition, plan: Plan, *, unsafe: bool = False) -> None:
     wanted = (*(leg.stop for leg in plan.legs), *(one.stop for one in plan.leaves_undone))
     t.set(plan=plan, outdated=False, leg=0, assume_passable=frozenset(entered), wanted=wanted)
     if plan.leaves_undone:
-        t.tell(f"The battery or the way does not allow everything. {partial_reason((), t.left()[len(plan.legs) :])}")
+        t.tell(
+            joined(
+                [
+                    message("The battery or the way does not allow everything."),
+                    partial_reason((), t.left()[len(plan.legs) :]),
+                ]
+            )
+        )
     next_leg(t)
 
 
@@ -57,7 +65,7 @@ def _done(t: Transition) -> Ending:
     """How the mission has gone once the last leg of its plan is flown."""
     left, achieved = t.left(), t.state.achieved
     if not left:
-        return Ending(outcome=Outcome.SUCCESS, reason="Every stop was reached.")
+        return Ending(outcome=Outcome.SUCCESS, reason=message("Every stop was reached."))
     outcome = Outcome.PARTIAL if achieved or t.state.looks else Outcome.NO_SAFE_PLAN
     return Ending(outcome=outcome, reason=partial_reason(achieved, left))
 
@@ -83,7 +91,7 @@ def fly_leg(t: Transition, decision: FlyTrajectory) -> None:
         _stay(t)
         return
     if decision.retreat:
-        t.note("retreat", "The drone went back the way it came.")
+        t.note("retreat", message("The drone went back the way it came."))
         t.set(retreats=t.state.retreats + 1)
         t.follow(decision.trajectory, Activity.RETREAT)
         return
@@ -109,7 +117,7 @@ def plan_again(t: Transition) -> None:
     """Deliberates anew from here, as often as news may ask for it."""
     t.set(replans=t.state.replans + 1, plan=None)
     if t.state.replans >= MAX_REPLANS:
-        t.give_up("New things kept turning up in the way.")
+        t.give_up(message("New things kept turning up in the way."))
         return
     t.request(Purpose.MISSION)
 
@@ -157,7 +165,7 @@ def mark_done(t: Transition, stop: Stop) -> None:
         t.set(looks=(*t.state.looks, look))
         if look.result is Sight.UNSEEN:
             return
-    achieved = Achieved(n=stop.step, text=stop.text or stop.id, at_s=t.state.clock_s - begun_s)
+    achieved = Achieved(n=stop.step, text=stop.said, at_s=t.state.clock_s - begun_s)
     t.set(achieved=(*t.state.achieved, achieved))
 
 
@@ -175,9 +183,9 @@ def watch(t: Transition, event: MapObserved) -> None:
     things = uncertain_things(event.map)
     new = [words for name, words in things.items() if name not in motion.known]
     if event.obstruction:
-        news = f"the way ahead is not known to be free any more: {event.obstruction}"
+        news = message("The way ahead is not known to be free any more: {obstruction}.", obstruction=event.obstruction)
     elif new and t.state.activity is Activity.LEG:
-        news = f"something new and uncertain: {new[0]}"
+        news = message("Something new and uncertain: {what}.", what=Named(new[0]))
     else:
         return
     if t.state.activity is Activity.LEG:
@@ -192,7 +200,7 @@ def go_back(t: Transition, decision: GoBack) -> None:
         return
     if_possible = t.state.setup.mission.returns is ReturnRule.IF_POSSIBLE
     if t.state.goal is Goal.RETURN and _is_over(t) and if_possible and decision.duration_s > t.state.endurance_s():
-        t.end("The battery does not suffice for the way back: it holds where it is.")
+        t.end(message("The battery does not suffice for the way back: it holds where it is."))
         return
     if decision.trajectory is None:
         there(t)
@@ -210,7 +218,7 @@ def go_back(t: Transition, decision: GoBack) -> None:
         return
     t.set(hops=t.state.hops + 1)
     if t.state.hops > MAX_HOPS:
-        t.end("It holds where it is.")
+        t.end(message("It holds where it is."))
         return
     activity = Activity.TO_LANDING if t.state.goal is Goal.LAND else Activity.HOMEWARD
     t.follow(decision.trajectory, activity, decision.trajectory.position_m[::10])
@@ -231,13 +239,13 @@ def no_way_back(t: Transition, decision: RefuseFlight) -> None:
         t.redirect(Goal.LAND)
         proceed_back(t)
         return
-    t.end("It holds where it is.")
+    t.end(message("It holds where it is."))
 
 
 def _stay(t: Transition) -> None:
     """Without a position nothing is flown, the way back no more than any other: it lands right here, or holds."""
     if t.state.goal is Goal.LAND:
-        t.end("Its position is not known, nor whether the ground below is free: it holds where it is.")
+        t.end(message("Its position is not known, nor whether the ground below is free: it holds where it is."))
         return
     t.redirect(Goal.LAND)
     proceed_back(t)
@@ -254,7 +262,7 @@ def there(t: Transition) -> None:
         t.set(goal=Goal.LAND)
         t.descend()
     else:
-        t.end("It is back at the start.")
+        t.end(message("It is back at the start."))
 
 
 def _is_over(t: Transition) -> bool:

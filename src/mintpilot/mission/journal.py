@@ -22,6 +22,7 @@ from mintpilot.core.events import (
     Timed,
 )
 from mintpilot.core.inputs import Answered, DeliberationEnded, Input, MapObserved, MotionEnded, Ordered
+from mintpilot.core.message import joined, message
 from mintpilot.core.motion import FollowTrajectory
 from mintpilot.core.ports import Recorder
 from mintpilot.core.query import Answer, Reply
@@ -85,7 +86,7 @@ class Journal:
                 if leg.stop.action is Action.LOOK:
                     yield MapUpdated(map=after.beliefs.map, why=f"looked into {leg.site.label}")
             case Ordered():
-                said = " ".join(d.text for d in directives if isinstance(d, Tell))
+                said = joined([d.text for d in directives if isinstance(d, Tell)])
                 yield OrderTaken(
                     order=event.order, operator=event.operator, text=event.text, answer=said, time_s=after.clock_s
                 )
@@ -107,7 +108,8 @@ class Journal:
                 yield MapUpdated(map=after.beliefs.map, why="survey")
             elif isinstance(directive, WithdrawQuestion) and _broken_off(before, event):
                 assert before.question is not None
-                text = f"'{before.question.question.text}' was withdrawn: {directive.why}."
+                asked = before.question.question.text
+                text = message("'{question}' was withdrawn: {why}.", question=asked, why=directive.why)
                 yield Noticed(kind="withdrawn", text=text)
 
     def _deliberated(self, before: MissionState, event: DeliberationEnded, after: MissionState) -> Iterator[Event]:

@@ -9,6 +9,7 @@ import numpy as np
 
 from mintpilot.core.errors import InfeasibleError
 from mintpilot.core.gap import Assumptions
+from mintpilot.core.message import Named, message
 from mintpilot.core.plan import Leg, Look, Plan, PlanningProblem, Site, Stop
 from mintpilot.core.ports import LookOption, Planner, PlanSpace
 from mintpilot.core.task import Action
@@ -92,7 +93,7 @@ def _flight(problem: PlanningProblem, look: Look) -> Plan | None:
         sites=(site,),
         gap=gap.id,
         dwell_s=look.dwell_s,
-        text=f"look at {gap.description}",
+        text=message("look at {place}", place=Named(gap.description)),
         informs=True,
     )
     length_m = float(np.linalg.norm(np.diff(path, axis=0), axis=1).sum())

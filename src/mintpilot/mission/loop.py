@@ -7,6 +7,7 @@ from dataclasses import replace
 
 from mintpilot.core.events import MissionEnded, Noticed
 from mintpilot.core.inputs import Input, MissionBegun
+from mintpilot.core.message import message
 from mintpilot.core.mission import Outcome, Verdict
 from mintpilot.mission.components import MissionComponents
 from mintpilot.mission.directives import (
@@ -31,7 +32,8 @@ def fly_mission(components: MissionComponents) -> Verdict:
     vehicle = components.vehicle.state()
     state = initial_state(components.setup, vehicle)
     events: deque[Input] = deque([MissionBegun(time_s=vehicle.time_s, vehicle=vehicle)])
-    verdict = Verdict(outcome=Outcome.ABORTED, reason="The mission was broken off; the drone holds where it is.")
+    broken_off = message("The mission was broken off; the drone holds where it is.")
+    verdict = Verdict(outcome=Outcome.ABORTED, reason=broken_off)
     components.recorder.record(components.started())
     if components.begins_with:
         components.recorder.record(Noticed(kind="map", text=components.begins_with))
@@ -59,7 +61,7 @@ def fly_mission(components: MissionComponents) -> Verdict:
         verdict = shell.verdict(state)
     finally:
         if not state.ended and state.grounded:
-            verdict = replace(verdict, reason="The mission was broken off; the drone stands on the ground.")
+            verdict = replace(verdict, reason=message("The mission was broken off; the drone stands on the ground."))
         shell.close()
         components.recorder.record(MissionEnded(verdict=verdict))
     return verdict

@@ -7,6 +7,7 @@ import numpy as np
 from mintpilot.core.decisions import Explore, FlyTrajectory, GoBack, RefuseFlight
 from mintpilot.core.errors import InfeasibleError
 from mintpilot.core.geometry import Bools, Floats, Ints, Vec3
+from mintpilot.core.message import Message, message
 from mintpilot.core.mission import Mission
 from mintpilot.core.plan import Leg, VehicleLimits
 from mintpilot.core.rule import Ruling
@@ -59,13 +60,13 @@ def leg_trajectory(
                 shortcut=shortcut,
             )
         except InfeasibleError as error:
-            return RefuseFlight(reason=str(error))
+            return RefuseFlight(reason=error.said)
         refusal = check_trajectory(trajectory, believed, limits)
         if refusal:
             return RefuseFlight(reason=refusal)
         if ruling is None or keeps_rules(trajectory.position_m, ruling, map, limits, as_along_m=path):
             return FlyTrajectory(trajectory=trajectory)
-    return RefuseFlight(reason="no motion along the way keeps the rules")
+    return RefuseFlight(reason=message("no motion along the way keeps the rules"))
 
 
 def explore(
@@ -101,7 +102,7 @@ def explore(
         if out is not None:
             return Explore(trajectory=out, retreat=True, unreachable_m=(), inspected=inspected)
     unreachable: list[Vec3] = []
-    notes: list[str] = []
+    notes: list[Message] = []
     while len(unreachable) < MOST_UNREACHABLE:
         if spacing_m is None:
             path = way_to(map, limits, start_m=here, goal_m=mission.start_m)
@@ -152,7 +153,7 @@ def way_home(
             found = _checked(kept, map, limits, vehicle.yaw_rad, limits.cruise_mps, shortcut=shortcut)
             if isinstance(found, Trajectory) and keeps_rules(found.position_m, ruling, map, limits, as_along_m=kept):
                 return GoBack(trajectory=found, duration_s=found.duration_s)
-    reason = "no way to the start is known to be free"
+    reason = message("no way to the start is known to be free")
     path = way_to(map, limits, start_m=vehicle.position_m, goal_m=start_m)
     for way in (path, np.vstack([here[None], track_m[::-1]]) if len(track_m) else None):
         if way is not None:
@@ -172,7 +173,7 @@ def way_to_land(map: SemanticMap, limits: VehicleLimits, vehicle: VehicleState) 
         return GoBack(trajectory=None, duration_s=0.0)
     free = known_flyable(map, limits)
     cells = np.argwhere(free)
-    reason = "no ground is known to be free to land on"
+    reason = message("no ground is known to be free to land on")
     if not len(cells):
         return RefuseFlight(reason=reason)
     start = cells[int(np.argmin(np.linalg.norm(frame.centres_of(cells) - here, axis=1)))]
@@ -217,14 +218,14 @@ def landable_cells(map: SemanticMap, limits: VehicleLimits) -> Bools:
 
 def _checked(
     path: Floats, map: SemanticMap, limits: VehicleLimits, yaw_rad: float, speed_mps: float, *, shortcut: bool = True
-) -> Trajectory | str:
+) -> Trajectory | Message:
     """The trajectory along a path, or why it may not be flown."""
     try:
         trajectory = plan_trajectory(
             path, map=map, limits=limits, start_yaw_rad=yaw_rad, speed_mps=speed_mps, shortcut=shortcut
         )
     except InfeasibleError as error:
-        return str(error)
+        return error.said
     return check_trajectory(trajectory, map, limits) or trajectory
 
 

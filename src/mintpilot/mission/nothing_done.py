@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import replace
 
 from mintpilot.core.errors import InfeasibleError
 from mintpilot.core.gap import Assumptions
-from mintpilot.core.plan import LeftUndone, PlanningProblem, Shortage, Stop
+from mintpilot.core.message import Message, joined, message
+from mintpilot.core.mission import Left
+from mintpilot.core.plan import LeftUndone, PlanningProblem, Shortage
 from mintpilot.core.ports import Planner
 
 MOST_STOPS = 12
@@ -36,10 +39,13 @@ def nothing_done(problem: PlanningProblem, planner: Planner) -> tuple[LeftUndone
     return tuple(found)
 
 
-def sentence(left: tuple[LeftUndone, ...]) -> str:
+def sentence(left: Iterable[Left | LeftUndone]) -> Message:
     """What is left, with what ran short, as one plain sentence; empty where nothing is."""
-    said = "; ".join(f"{_words(one.stop)} ({one.reason})" for one in left)
-    return f"Left undone: {said}." if said else ""
+    told = [
+        message("{what} ({why})", what=one.text if isinstance(one, Left) else one.stop.said, why=one.reason)
+        for one in left
+    ]
+    return message("Left undone: {what}.", what=joined(told, "; ")) if told else Message()
 
 
 def _alone_s(problem: PlanningProblem, planner: Planner) -> float | None:
@@ -51,7 +57,3 @@ def _alone_s(problem: PlanningProblem, planner: Planner) -> float | None:
     except InfeasibleError:
         return None
     return None if plan is None or not plan.legs else plan.cost_s + plan.home_s
-
-
-def _words(stop: Stop) -> str:
-    return stop.text or stop.id

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from mintpilot.core.inputs import Link, LinkChanged, Ordered
+from mintpilot.core.message import Message, joined, message, verbatim
 from mintpilot.core.mission import Outcome
 from mintpilot.core.query import Order
 from mintpilot.mission.requests import Purpose
@@ -21,12 +22,21 @@ SEEN_FREE_S = 60.0
 AWAITING_MAP = (Activity.FIRST_LOOK, Activity.SWEPT, Activity.ACTED, Activity.ACTED_MEANWHILE)
 """What waits for a new map, which does not come without a camera."""
 
+LINKS = {
+    Link.OPERATOR: message("link to the operator"),
+    Link.CAMERA: message("camera picture"),
+    Link.TELEMETRY: message("link to the vehicle"),
+    Link.CONTROL: message("control of the vehicle"),
+    Link.POSITION: message("position fix"),
+    Link.MODEL: message("language model"),
+}
+"""What each link is called, without an article."""
 _ANSWERS = {
-    Order.HOLD: "I brake and hold here. Say 'continue' to go on.",
-    Order.CONTINUE: "I go on: I think again from here.",
-    Order.RETURN: "I fly back to the start by the way that is known to be free.",
-    Order.LAND: "I land here, or at the nearest place where the ground is known to be free.",
-    Order.ABORT: "I brake and ask nothing more. I land here if the ground is free, else I fly back and land.",
+    Order.HOLD: message("I brake and hold here. Say 'continue' to go on."),
+    Order.CONTINUE: message("I go on: I think again from here."),
+    Order.RETURN: message("I fly back to the start by the way that is known to be free."),
+    Order.LAND: message("I land here, or at the nearest place where the ground is known to be free."),
+    Order.ABORT: message("I brake and ask nothing more. I land here if the ground is free, else I fly back and land."),
 }
 
 
@@ -40,13 +50,13 @@ def ordered(t: Transition, event: Ordered) -> None:
             _hold(t, None)
         case Order.RETURN:
             t.tell(_ANSWERS[Order.RETURN])
-            _leave(t, Goal.RETURN, "The operator called the drone back.")
+            _leave(t, Goal.RETURN, message("The operator called the drone back."))
         case Order.LAND:
             t.tell(_ANSWERS[Order.LAND])
-            _leave(t, Goal.LAND, "The operator ordered the drone to land.")
+            _leave(t, Goal.LAND, message("The operator ordered the drone to land."))
         case Order.ABORT:
             t.tell(_ANSWERS[Order.ABORT])
-            _leave(t, Goal.LAND, "The operator broke the mission off.")
+            _leave(t, Goal.LAND, message("The operator broke the mission off."))
             t.set(land_here=True, lands=True)
 
 
@@ -57,32 +67,36 @@ def link_changed(t: Transition, event: LinkChanged) -> None:
         return
     others = tuple(item for item in t.state.links_down if item[0] is not link)
     t.set(links_down=others if event.up else (*others, (link, t.state.clock_s)))
-    reason = f" ({event.reason})" if event.reason else ""
-    t.note("link", f"The link '{link.value}' {'is back' if event.up else 'is lost'}{reason}.")
+    back, lost = message("The {link} is back", link=LINKS[link]), message("The {link} is lost", link=LINKS[link])
+    why = verbatim(f" ({event.reason})" if event.reason else "")
+    t.note("link", message("{what}{why}.", what=back if event.up else lost, why=why))
     if event.up:
         if t.state.held_for is link and t.state.goal is Goal.HOLD:
             _resume(t)
         return
     match link:
         case Link.TELEMETRY:
-            t.finish(Outcome.VEHICLE_FAILED, event.reason or "The link to the vehicle is lost: it is in its fail-safe.")
+            lost = message("The link to the vehicle is lost: it is in its fail-safe.")
+            t.finish(Outcome.VEHICLE_FAILED, verbatim(event.reason) or lost)
         case Link.CONTROL:
-            t.tell(f"I am not flying any more: {event.reason or 'somebody else has taken over'}.")
-            t.finish(Outcome.ABORTED, event.reason or "Somebody else has taken the vehicle over.")
+            why = verbatim(event.reason) or message("somebody else has taken over")
+            t.tell(message("I am not flying any more: {why}.", why=why))
+            taken = message("Somebody else has taken the vehicle over.")
+            t.finish(Outcome.ABORTED, verbatim(event.reason) or taken)
         case Link.CAMERA if t.state.activity in AWAITING_MAP and t.state.motion is None:
             t.set(activity=Activity.NONE)
             _blind(t, link)
         case Link.CAMERA | Link.POSITION if t.state.goal in (Goal.SURVEY, Goal.TASK) or link is Link.POSITION:
             _blind(t, link)
         case Link.MODEL:
-            t.tell("The language model is gone: I go on with words of my own.")
+            t.tell(message("The language model is gone: I go on with words of my own."))
         case _:
             pass
 
 
-def wait_for_hand(t: Transition, what: str) -> None:
+def wait_for_hand(t: Transition, what: Message) -> None:
     """A person has to do what the vehicle cannot: holds until they say that it is done."""
-    t.tell(f"{what}, then say 'continue'.")
+    t.tell(message("{what}, then say 'continue'.", what=what))
     _hold(t, None)
 
 
@@ -97,13 +111,14 @@ def pass_time(t: Transition) -> None:
         return
     held_s = state.clock_s - state.held_since_s
     if state.held_for is Link.CAMERA and held_s >= BLIND_S:
-        _end_hold(t, Goal.RETURN, Outcome.NO_SAFE_PLAN, "The camera is gone.")
+        _end_hold(t, Goal.RETURN, Outcome.NO_SAFE_PLAN, message("The camera is gone."))
     elif state.held_for is Link.POSITION and held_s >= BLIND_S:
-        _end_hold(t, Goal.LAND, Outcome.NO_SAFE_PLAN, "The position is not known.")
+        _end_hold(t, Goal.LAND, Outcome.NO_SAFE_PLAN, message("The position is not known."))
     elif held_s >= LONGEST_HOLD_S:
-        _end_hold(t, Goal.RETURN, Outcome.ABORTED, f"It held for {held_s:.0f} s and nobody said 'continue'.")
+        held = message("It held for {held_s:.0f} s and nobody said 'continue'.", held_s=held_s)
+        _end_hold(t, Goal.RETURN, Outcome.ABORTED, held)
     elif state.endurance_s() <= (state.home_s or 0.0) + RESERVE_S:
-        _end_hold(t, Goal.RETURN, Outcome.ABORTED, "It held until the battery was needed for the way back.")
+        _end_hold(t, Goal.RETURN, Outcome.ABORTED, message("It held until the battery was needed for the way back."))
 
 
 def begin_hold(t: Transition) -> None:
@@ -113,8 +128,10 @@ def begin_hold(t: Transition) -> None:
 
 
 def _blind(t: Transition, link: Link) -> None:
-    what = "I see nothing" if link is Link.CAMERA else "I do not know where I am"
-    t.tell(f"{what}: I brake and hold.")
+    if link is Link.CAMERA:
+        t.tell(message("I see nothing: I brake and hold."))
+    else:
+        t.tell(message("I do not know where I am: I brake and hold."))
     _hold(t, link)
 
 
@@ -125,7 +142,7 @@ def _hold(t: Transition, link: Link | None) -> None:
     t.set(held_since_s=t.state.clock_s, held_for=link, home_s=None)
 
 
-def _leave(t: Transition, goal: Goal, reason: str) -> None:
+def _leave(t: Transition, goal: Goal, reason: Message) -> None:
     if t.state.goal in (Goal.SURVEY, Goal.TASK):
         t.set(resume=t.state.goal)
     t.set(ending=Ending(outcome=Outcome.ABORTED, reason=reason), lands=False, land_here=False)
@@ -134,13 +151,13 @@ def _leave(t: Transition, goal: Goal, reason: str) -> None:
 
 def _continue(t: Transition) -> None:
     if t.state.goal in (Goal.SURVEY, Goal.TASK):
-        t.tell("I am going on already.")
+        t.tell(message("I am going on already."))
         return
     blind = [link for link in (Link.CAMERA, Link.POSITION) if t.state.is_down(link)]
     ending = t.state.ending
     if blind or (ending is not None and ending.outcome is not Outcome.ABORTED and t.state.goal is not Goal.HOLD):
-        why = f"the link '{blind[0].value}' is lost." if blind or ending is None else ending.reason
-        t.tell(f"I cannot go on: {why}")
+        why = message("The {link} is lost.", link=LINKS[blind[0]]) if blind or ending is None else ending.reason
+        t.tell(message("I cannot go on: {why}", why=why))
         return
     t.tell(_ANSWERS[Order.CONTINUE])
     _resume(t)
@@ -151,7 +168,7 @@ def _resume(t: Transition) -> None:
     t.redirect(t.state.resume)
 
 
-def _end_hold(t: Transition, goal: Goal, outcome: Outcome, reason: str) -> None:
+def _end_hold(t: Transition, goal: Goal, outcome: Outcome, reason: Message) -> None:
     t.set(ending=Ending(outcome=outcome, reason=reason), held_since_s=None, held_for=None)
-    t.tell(f"{reason} I {'return' if goal is Goal.RETURN else 'land'}.")
+    t.tell(joined([reason, message("I return.") if goal is Goal.RETURN else message("I land.")]))
     t.redirect(goal)

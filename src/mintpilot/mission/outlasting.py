@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from mintpilot.core.message import message
 from mintpilot.core.trajectory import Trajectory
 from mintpilot.mission.grants import SPARE_S, leaves_s, without
 from mintpilot.mission.transition import Transition
@@ -22,6 +23,7 @@ def outlasted(t: Transition, trajectory: Trajectory) -> bool:
     if not outlived and not hopeless:
         return False
     t.set(beliefs=without(beliefs, frozenset(outlived), blocked=frozenset(hopeless)), fallback=None)
-    why = f"The yes counts for {valid_s:.0f} s, and that runs out before the drone is through"
-    t.note("permission", f"{why}: {'it keeps out' if hopeless else 'it is asked about again'}.")
+    why = message("The yes counts for {valid_s:.0f} s, and that runs out before the drone is through", valid_s=valid_s)
+    then = message("it keeps out") if hopeless else message("it is asked about again")
+    t.note("permission", message("{why}: {then}.", why=why, then=then))
     return True

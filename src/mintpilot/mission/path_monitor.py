@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from mintpilot.core.geometry import Floats, Vec3
+from mintpilot.core.message import Message
 from mintpilot.core.plan import VehicleLimits
 from mintpilot.core.semantic_map import Knowledge, SemanticMap
 from mintpilot.planning.checks import check_path
@@ -35,21 +36,21 @@ class PathMonitor:
         self._passed = 0
         self._bad_looks = 0
 
-    def assess(self, map: SemanticMap, position_m: Vec3) -> str:
+    def assess(self, map: SemanticMap, position_m: Vec3) -> Message:
         """Why the path ahead of that position cannot be flown any more on this map; empty while it can."""
         here = np.asarray(position_m)
         window = self._path[self._passed : self._passed + _WINDOW]
         self._passed += int(np.argmin(np.linalg.norm(window - here, axis=1)))
         ahead = self._path[self._passed + 1 :]
         if not len(ahead):
-            return ""
+            return Message()
         map = with_passable(map, self._assume_passable)
         steps = np.linalg.norm(np.diff(np.vstack([here[None], ahead]), axis=0), axis=1)
         near = ahead[np.cumsum(steps) <= NEAR_M]
-        close = check_path(near, map, self._limits) if len(near) else ""
+        close = check_path(near, map, self._limits) if len(near) else Message()
         far = close or check_path(ahead, map, self._limits)
         self._bad_looks = self._bad_looks + 1 if far else 0
-        return close or (far if self._bad_looks >= CONFIRMING_LOOKS else "")
+        return close or (far if self._bad_looks >= CONFIRMING_LOOKS else Message())
 
 
 def with_passable(map: SemanticMap, regions: frozenset[str]) -> SemanticMap:

@@ -9,6 +9,7 @@ import numpy as np
 
 from mintpilot.core.decisions import Decision, FlyTrajectory, NoPlan
 from mintpilot.core.geometry import Bools, Floats, Vec3
+from mintpilot.core.message import verbatim
 from mintpilot.core.plan import Leg
 from mintpilot.core.trajectory import VehicleState
 from mintpilot.mission.belief_state import BeliefState
@@ -113,4 +114,4 @@ def decide(parts: DeliberationParts, request: Request) -> Decision:
             endurance_s=request.endurance_s,
             explained=request.explained,
         )
-    return NoPlan(reason=f"a request for '{request.purpose}' without what it is about")
+    return NoPlan(reason=verbatim(f"a request for '{request.purpose}' without what it is about"))

@@ -21,6 +21,7 @@ from mintpilot.core.inputs import (
     QuestionShown,
     Ticked,
 )
+from mintpilot.core.message import message
 from mintpilot.core.mission import Outcome, Sight, Verdict
 from mintpilot.core.ports import Operator
 from mintpilot.core.query import Question
@@ -133,9 +134,9 @@ class Shell:
                 case ShowQuestion():
                     operator.show(directive.question, directive.patience_s)
                 case WithdrawQuestion():
-                    operator.withdraw(directive.question, directive.why)
+                    operator.withdraw(directive.question, self._parts.spoken(directive.why))
                 case Tell():
-                    operator.tell(directive.text)
+                    operator.tell(self._parts.spoken(directive.text))
 
     def begin_task(self) -> list[Input]:
         """The survey is over. The vehicle's battery may be another one now: how it stands is said at once."""
@@ -150,7 +151,7 @@ class Shell:
 
     def verdict(self, state: MissionState) -> Verdict:
         """How it really went where somebody can tell, else how the mission believes that it went."""
-        believed = state.verdict or Verdict(outcome=Outcome.ABORTED, reason="The mission was broken off.")
+        believed = state.verdict or Verdict(outcome=Outcome.ABORTED, reason=message("The mission was broken off."))
         judge = self._parts.judge
         if judge is None:
             return believed
@@ -185,7 +186,9 @@ class Shell:
             del self._waiting[MOST_WAITING:]
             if not self._flooded:
                 self._flooded = True
-                text = f"More than {MOST_WAITING} inputs of operators came at once: some are not looked at."
+                text = message(
+                    "More than {most} inputs of operators came at once: some are not looked at.", most=MOST_WAITING
+                )
                 self._parts.recorder.record(Noticed(kind="operator", text=text))
 
     def _heard(self) -> list[Input]:
@@ -196,7 +199,7 @@ class Shell:
                 events += operator.poll(self._now_s)
             except DeviceError as error:
                 self._operators.remove(operator)
-                self._parts.recorder.record(Noticed(kind="operator", text=str(error)))
+                self._parts.recorder.record(Noticed(kind="operator", text=error.said))
                 if not self._operators:
                     lost = LinkChanged(time_s=self._now_s, link=Link.OPERATOR, up=False, reason=str(error))
                     events.append(lost)
@@ -234,7 +237,7 @@ class Shell:
             events += self._glance(state)
         failure = parts.judge.verdict() if parts.judge is not None else None
         if failure is not None and not ended:
-            events.append(LinkChanged(time_s=self._now_s, link=Link.TELEMETRY, up=False, reason=failure.reason))
+            events.append(LinkChanged(time_s=self._now_s, link=Link.TELEMETRY, up=False, reason=str(failure.reason)))
         events.append(Ticked(time_s=self._now_s, vehicle=vehicle))
         self._flying_s += time.perf_counter() - began
         if attended:

@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from mintpilot.core.geometry import Floats
+from mintpilot.core.message import message
 from mintpilot.core.mission import Left, Looked, Sight
 from mintpilot.core.observation import PERSON
 from mintpilot.core.plan import Stop
@@ -40,7 +41,7 @@ def looked(stop: Stop, task: Task, map: SemanticMap, view: RoomView | None) -> L
     result = Sight.FOUND if count else Sight.EMPTY if share >= SEEN_ENOUGH else Sight.UNSEEN
     return Looked(
         n=stop.step,
-        text=stop.text or stop.id,
+        text=stop.said,
         result=result,
         what=wanted or (PERSON if people else ""),
         count=count,
@@ -51,7 +52,9 @@ def looked(stop: Stop, task: Task, map: SemanticMap, view: RoomView | None) -> L
 
 def unknown(look: Looked) -> Left:
     """A look that told nothing, as something that was not done."""
-    reason = f"it could not see inside: the room was seen through {look.seen_share:.0%} of its doorway"
+    reason = message(
+        "it could not see inside: the room was seen through {share:.0%} of its doorway", share=look.seen_share
+    )
     return Left(n=look.n, text=look.text, reason=reason, resource="sight")
 
 

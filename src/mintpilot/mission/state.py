@@ -10,6 +10,7 @@ import numpy as np
 from mintpilot.core.briefing import Briefing
 from mintpilot.core.geometry import Floats
 from mintpilot.core.inputs import Link
+from mintpilot.core.message import Message
 from mintpilot.core.mission import Achieved, Looked, Mission, Outcome, Verdict, Waiting
 from mintpilot.core.plan import LeftUndone, Plan, Prospect, Stop
 from mintpilot.core.query import Answer, Query, Question
@@ -183,7 +184,7 @@ class Ending:
     """How the mission ends once the drone is home or on the ground, or can go no further."""
 
     outcome: Outcome
-    reason: str
+    reason: Message
     """Why, in one sentence; where the drone is then is added."""
 
 
@@ -267,7 +268,7 @@ class MissionState:
     explanations: tuple[GapExplanation, ...] = ()
     """Of every gap that was ever open, from the first deliberation that knew of it."""
     asked_gaps: frozenset[str] = frozenset()
-    notes: frozenset[str] = frozenset()
+    notes: frozenset[Message] = frozenset()
     """Bounds on the work that were told already."""
     links_down: tuple[tuple[Link, float], ...] = ()
     """Links that are down, and since when."""

@@ -34,6 +34,7 @@ from mintpilot.core.inputs import (
     QuestionShown,
     Ticked,
 )
+from mintpilot.core.message import message, verbatim
 from mintpilot.core.mission import Outcome
 from mintpilot.core.motion import MotionEnd
 from mintpilot.core.semantic_map import Knowledge
@@ -148,7 +149,7 @@ def _proceed_without_map(t: Transition) -> None:
         case Goal.SURVEY | Goal.TASK:
             t.observe(Activity.FIRST_LOOK)
         case Goal.RETURN:
-            t.end("It holds where it is.")
+            t.end(message("It holds where it is."))
         case Goal.LAND:
             t.descend()
         case _:
@@ -228,7 +229,7 @@ def _motion_ended(t: Transition, event: MotionEnded) -> None:
     if event.end is MotionEnd.REFUSED:
         t.set(refusals=t.state.refusals + 1)
     if event.end is MotionEnd.FAILED or t.state.refusals >= MAX_REFUSALS:
-        t.finish(Outcome.VEHICLE_FAILED, event.reason or "The vehicle could not go on.")
+        t.finish(Outcome.VEHICLE_FAILED, verbatim(event.reason) or message("The vehicle could not go on."))
         return
     stopped = event.end is not MotionEnd.ARRIVED
     t.set(view=event.view)
@@ -247,13 +248,13 @@ def _motion_ended(t: Transition, event: MotionEnded) -> None:
             t.observe(Activity.ACTED_MEANWHILE)
         case Activity.ACT if t.state.goal is Goal.TASK and event.by_hand and not stopped:
             flying.done_by_hand(t)
-            ordering.wait_for_hand(t, event.by_hand)
+            ordering.wait_for_hand(t, verbatim(event.by_hand))
         case Activity.ACT if t.state.goal is Goal.TASK:
             flying.plan_again(t) if stopped else t.observe(Activity.ACTED)
         case Activity.HOMEWARD | Activity.TO_LANDING if t.state.goal in (Goal.RETURN, Goal.LAND) and not stopped:
             flying.proceed_back(t)
         case Activity.DESCENT if t.state.goal is Goal.LAND and not stopped:
-            t.end("It stands on the ground.")
+            t.end(message("It stands on the ground."))
         case _:
             pass  # broken off: the goal says what is next
 
@@ -325,17 +326,17 @@ def _is_outdated(t: Transition, request: PendingRequest, decision: Decision) -> 
 def _without_decision(t: Transition, request: PendingRequest, reason: str) -> None:
     """The cautious plan that was checked last; where there is none, back to the start."""
     t.set(request=None, drops=0)
-    t.note("deliberation", f"No decision ({reason}).")
+    t.note("deliberation", message("No decision ({reason}).", reason=reason))
     fallback = t.state.fallback
     match request.purpose:
         case Purpose.MISSION if fallback is not None:
             t.set(fallback=None)
             flying.fly_plan(t, fallback)
         case Purpose.MISSION | Purpose.LEG:
-            t.give_up(f"No plan could be worked out: {reason}.")
+            t.give_up(message("No plan could be worked out: {reason}.", reason=reason))
         case Purpose.SURVEY:
             surveying.begin_task(t)
         case Purpose.MEANWHILE:
             meanwhile.decided(t, None)
         case Purpose.RETURN | Purpose.LAND:
-            flying.no_way_back(t, RefuseFlight(reason=reason))
+            flying.no_way_back(t, RefuseFlight(reason=verbatim(reason)))

@@ -9,6 +9,7 @@ import numpy as np
 
 from mintpilot.core.decisions import Explore
 from mintpilot.core.geometry import Floats
+from mintpilot.core.message import message
 from mintpilot.core.trajectory import Trajectory
 from mintpilot.mission.directives import BeginTask
 from mintpilot.mission.navigation import ARRIVED_M
@@ -78,7 +79,7 @@ def go_on(t: Transition, decision: Explore) -> None:
         return
     path_m = decision.trajectory.position_m[::10]
     if decision.retreat:
-        t.note("retreat", "The drone went back the way it came.")
+        t.note("retreat", message("The drone went back the way it came."))
         t.set(retreats=t.state.retreats + 1)
         t.follow(decision.trajectory, Activity.SURVEY_BACK)
     elif survey.homeward:

@@ -6,6 +6,7 @@ from dataclasses import replace
 from typing import Final
 
 from mintpilot.core.inputs import FactConfirmed, FactTold, FactUndone
+from mintpilot.core.message import Message, Named, message
 from mintpilot.core.semantic_map import SemanticMap
 from mintpilot.core.told import (
     PREFIX,
@@ -43,7 +44,7 @@ def told(t: Transition, event: FactTold) -> None:
     """Takes a fact over at once where it adds caution; else reads it back."""
     beliefs, mission = t.state.beliefs, t.state.setup.mission
     if _too_many(t.state, event.fact):
-        t.tell("I cannot keep more of what is told in one mission.")
+        t.tell(message("I cannot keep more of what is told in one mission."))
         return
     known = ToldFact(
         id=f"{PREFIX}{t.next_id()}",
@@ -54,11 +55,11 @@ def told(t: Transition, event: FactTold) -> None:
         standing=Standing.COUNTS,
     )
     if beliefs is None:
-        why = "" if isinstance(event.fact, KeepOut) else "there is no map yet"
+        why = Message() if isinstance(event.fact, KeepOut) else message("there is no map yet")
         _keep(t, _refused(known, why) if why else Telling(known=known))
         return
     found = facts.apply(event.fact, beliefs, beliefs.map, mission, t.state.clock_s)
-    if isinstance(found, str):
+    if isinstance(found, Message):
         _keep(t, _refused(known, found))
     elif isinstance(event.fact, _FREEING) or enlarges(beliefs, found.beliefs, mission.asking):
         read_back = replace(known, standing=Standing.READ_BACK)
@@ -86,7 +87,7 @@ def confirmed(t: Transition, event: FactConfirmed) -> None:
         return
     mission = t.state.setup.mission
     found = facts.apply(telling.known.fact, t.beliefs, telling.shown, mission, t.state.clock_s)
-    if isinstance(found, str):
+    if isinstance(found, Message):
         _replace(t, _refused(telling.known, found))
         return
     known = replace(telling.known, standing=Standing.COUNTS)
@@ -170,7 +171,7 @@ def _take_over(t: Transition, beliefs: BeliefState) -> None:
     asking.check_permissions(t)
     if t.state.grounded:
         return
-    t.withdraw("the operator has told something new")
+    t.withdraw(message("the operator has told something new"))
     # somebody attends to the mission: its patience with news begins anew
     t.set(request=None, fallback=None, drops=0, replans=0, hops=0, home_s=None, outdated=t.state.plan is not None)
     if t.state.activity in _IN_FLIGHT:
@@ -186,47 +187,53 @@ def _replace(t: Transition, telling: Telling, *, by: str = "") -> None:
     before = _find(t.state, telling.known.id)
     t.set(told=tuple(telling if one.known.id == telling.known.id else one for one in t.state.told))
     if before is not None and before.known.standing is Standing.UNDO_READ_BACK and telling.known.counts:
-        t.note("told", f"Stays: {_in_words(telling.known.fact, telling.known.words)}{f' ({by})' if by else ''}.")
+        t.note("told", message("Stays: {what}.", what=_by(_in_words(telling.known), by)))
     else:
         _note(t, telling, by)
 
 
 def _note(t: Transition, telling: Telling, by: str) -> None:
     known = telling.known
-    what, who = _in_words(known.fact, known.words), f" ({by})" if by else ""
+    what = _in_words(known)
+    said = _by(what, by)
     match known.standing:
         case Standing.READ_BACK:
-            t.note("told", f"Read back: {what}{who}.")
+            t.note("told", message("Read back: {what}.", what=said))
         case Standing.COUNTS:
-            t.note("told", f"Told: {what}{who}.")
-            t.tell(f"I take over: {what}.")
+            t.note("told", message("Told: {what}.", what=said))
+            t.tell(message("I take over: {what}.", what=what))
         case Standing.UNDO_READ_BACK:
-            t.note("told", f"Read back: that it is taken back: {what}{who}.")
+            t.note("told", message("Read back: that it is taken back: {what}.", what=said))
         case Standing.UNDONE:
-            t.note("told", f"Taken back: {what}{who}.")
-            t.tell(f"I take back: {what}.")
+            t.note("told", message("Taken back: {what}.", what=said))
+            t.tell(message("I take back: {what}.", what=what))
         case Standing.LAPSED:
-            t.note("told", f"No longer counts: {what}.")
+            t.note("told", message("No longer counts: {what}.", what=what))
         case Standing.REFUSED:
-            t.note("told", f"Not taken over: {what}: {known.why}{who}.")
-            t.tell(f"I do not take over that {what}: {known.why}.")
+            t.note("told", message("Not taken over: {what}: {why}.", what=said, why=known.why))
+            t.tell(message("I do not take this over: {what}: {why}.", what=what, why=known.why))
 
 
-def _in_words(fact: Fact, words: str) -> str:
-    match fact:
+def _by(what: Message, who: str) -> Message:
+    return message("{what} ({who})", what=what, who=who) if who else what
+
+
+def _in_words(known: ToldFact) -> Message:
+    what = Named(known.words)
+    match known.fact:
         case KeepOut():
-            return "a region was drawn to stay out of"
+            return message("a region was drawn to stay out of")
         case RegionBlocked():
-            return f"{words} must not be entered"
+            return message("{what} must not be entered", what=what)
         case RegionPassable():
-            return f"{words} may be flown through"
+            return message("{what} may be flown through", what=what)
         case RoomSearched():
-            return f"{words} was searched"
+            return message("{what} was searched", what=what)
         case ThisOne():
-            return f"{words} is the one that is meant"
+            return message("{what} is the one that is meant", what=what)
 
 
-def _refused(known: ToldFact, why: str) -> Telling:
+def _refused(known: ToldFact, why: Message) -> Telling:
     return Telling(known=replace(known, standing=Standing.REFUSED, why=why))
 
 

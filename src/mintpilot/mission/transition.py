@@ -10,6 +10,7 @@ import numpy as np
 
 from mintpilot.core.geometry import Floats
 from mintpilot.core.inputs import Link
+from mintpilot.core.message import Message, joined, message
 from mintpilot.core.mission import Achieved, Left, Outcome, Sight, Verdict, left_of
 from mintpilot.core.motion import FollowTrajectory, Land, PerformAction, TakeOff
 from mintpilot.core.plan import Leg, Stop
@@ -26,6 +27,7 @@ from mintpilot.mission.directives import (
     Tell,
     WithdrawQuestion,
 )
+from mintpilot.mission.nothing_done import sentence
 from mintpilot.mission.requests import Purpose, Request
 from mintpilot.mission.sights import unknown
 from mintpilot.mission.state import (
@@ -71,11 +73,11 @@ class Transition:
         """Gives one directive."""
         self.out.append(directive)
 
-    def tell(self, text: str) -> None:
+    def tell(self, text: Message) -> None:
         """Says something to the operators."""
         self.give(Tell(text=text))
 
-    def note(self, kind: str, text: str) -> None:
+    def note(self, kind: str, text: Message) -> None:
         """Keeps a line for the report."""
         self.give(Note(kind=kind, text=text))
 
@@ -152,7 +154,7 @@ class Transition:
         self.set(request=pending, activity=Activity.NONE)
         self.give(Deliberate(request=request))
 
-    def withdraw(self, why: str) -> None:
+    def withdraw(self, why: Message) -> None:
         """Takes the open question back, if there is one, and ends what is done meanwhile."""
         open_ = self.state.question
         if open_ is not None:
@@ -165,15 +167,15 @@ class Transition:
 
     def redirect(self, goal: Goal) -> None:
         """Goes after something else from the next moment of rest on: what is going on is broken off."""
-        self.withdraw("the drone does something else now")
+        self.withdraw(message("the drone does something else now"))
         self.set(goal=goal, request=None, drops=0, hops=0)
         self.brake()
 
-    def give_up(self, why: str) -> None:
+    def give_up(self, why: Message) -> None:
         """No safe way leads on: back to the start, as far as known free space leads there."""
-        self.tell(f"I do not fly on: {why}")
+        self.tell(message("I do not fly on: {why}", why=why))
         some = bool(self.state.achieved)
-        reason = f"{partial_reason(self.state.achieved, ())} {why}" if some else why
+        reason = joined([partial_reason(self.state.achieved, ()), why]) if some else why
         self.set(ending=Ending(outcome=Outcome.PARTIAL if some else Outcome.NO_SAFE_PLAN, reason=reason))
         self.redirect(Goal.RETURN)
 
@@ -183,17 +185,17 @@ class Transition:
         finished = state.beliefs.finished if state.beliefs is not None else frozenset[str]()
         undone = state.undone if state.plan is None else state.plan.leaves_undone
         why = {one.stop.id: left_of(one) for one in undone}
-        ended = "the mission ended before it"
+        ended = message("the mission ended before it")
         unseen = tuple(unknown(look) for look in state.looks if look.result is Sight.UNSEEN)
         return unseen + tuple(
-            why.get(stop.id) or Left(n=stop.step, text=stop.text or stop.id, reason=ended, resource="ended")
+            why.get(stop.id) or Left(n=stop.step, text=stop.said, reason=ended, resource="ended")
             for stop in state.wanted
             if stop.id not in finished
         )
 
-    def finish(self, outcome: Outcome, reason: str) -> None:
+    def finish(self, outcome: Outcome, reason: Message) -> None:
         """The mission is over."""
-        self.withdraw("the mission is over")
+        self.withdraw(message("the mission is over"))
         verdict = Verdict(
             outcome=outcome,
             reason=reason,
@@ -205,10 +207,10 @@ class Transition:
         self.set(goal=Goal.ENDED, request=None, verdict=verdict)
         self.give(Finish(verdict=verdict))
 
-    def end(self, where: str) -> None:
+    def end(self, where: Message) -> None:
         """Ends as was decided when the drone set out for where it is now; ``where`` says where that is."""
-        ending = self.state.ending or Ending(outcome=Outcome.ABORTED, reason="The mission was broken off.")
-        self.finish(ending.outcome, f"{ending.reason} {where}".strip())
+        ending = self.state.ending or Ending(outcome=Outcome.ABORTED, reason=message("The mission was broken off."))
+        self.finish(ending.outcome, joined([ending.reason, where]))
 
     def _begin(self, move: Move, activity: Activity) -> None:
         known = frozenset(uncertain_things(self.state.beliefs.map)) if self.state.beliefs else frozenset[str]()
@@ -217,8 +219,7 @@ class Transition:
         self.give(move)
 
 
-def partial_reason(achieved: Sequence[Achieved], left: Sequence[Left]) -> str:
+def partial_reason(achieved: Sequence[Achieved], left: Sequence[Left]) -> Message:
     """What was done and what was left, with what ran short, in plain sentences."""
-    done = "; ".join(one.text for one in achieved)
-    undone = "; ".join(f"{one.text} ({one.reason})" for one in left)
-    return " ".join([f"Done: {done}." if done else "", f"Left undone: {undone}." if undone else ""]).strip()
+    done = message("Done: {what}.", what=joined([one.text for one in achieved], "; ")) if achieved else Message()
+    return joined([done, sentence(left)])

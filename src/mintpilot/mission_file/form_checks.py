@@ -11,6 +11,7 @@ from typing import Any
 from pydantic_core import ErrorDetails
 
 from mintpilot.mission_file.schema import MissionFile
+from mintpilot.mission_file.schema_base import WAYS_TO_DESCRIBE
 from mintpilot.mission_file.yaml_places import Path_, Value
 
 _KINDS = {
@@ -73,6 +74,8 @@ class FormWords:
         for step in loc:
             if step in self._schema["$defs"]:
                 continue
+            if step in WAYS_TO_DESCRIBE and not (isinstance(value, Mapping) and step in value):
+                continue
             if isinstance(value, Mapping):
                 value = value.get(str(step))
             elif isinstance(value, list) and isinstance(step, int) and step < len(value):
@@ -86,7 +89,8 @@ class FormWords:
         """The offending value, the rule and what to write instead."""
         kind, given = error["type"], error["input"]
         context = error.get("ctx", {})
-        schema = self._schema_at(error["loc"])
+        loc = error["loc"]
+        schema = self._schema_at(loc) if loc[-1:] != ("[key]",) else self._schema_at(loc[:-2]).get("propertyNames", {})
         if kind == "missing" and isinstance(error["loc"][-1], int):
             count = len(self._schema_at(error["loc"][:-1]).get("prefixItems", ()))
             return f"{show(given)} has {len(given)} numbers, {count} are wanted{_advice(schema)}"
@@ -114,6 +118,9 @@ class FormWords:
         for step in loc:
             if step in self._schema["$defs"]:
                 schema = self._schema["$defs"][step]
+                continue
+            if step in WAYS_TO_DESCRIBE and "oneOf" in schema:
+                schema = {**schema, **schema["oneOf"][WAYS_TO_DESCRIBE.index(step)]}
                 continue
             if isinstance(step, int):
                 prefix = schema.get("prefixItems", [])

@@ -9,7 +9,16 @@ from collections.abc import Mapping
 from itertools import pairwise
 from typing import Annotated, Any, Literal, TypeAlias, TypeVar
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, GetJsonSchemaHandler, WithJsonSchema
+from pydantic import (
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Discriminator,
+    Field,
+    GetJsonSchemaHandler,
+    Tag,
+    WithJsonSchema,
+)
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema
 
@@ -81,7 +90,19 @@ ThinkWords: TypeAlias = Annotated[str, Field(pattern=r"^\d+(\.\d+)?(\.\.\d+(\.\d
 """``5``, or ``2..8``: a time, or two bounds between which it is drawn evenly, seconds."""
 Words: TypeAlias = Annotated[str, Field(min_length=1, max_length=1000)]
 Spoken: TypeAlias = Literal["en", "de", "fr", "es"]
-Described: TypeAlias = Words | Annotated[dict[Spoken, Words], Field(min_length=1)]
+WAYS_TO_DESCRIBE = ("words", "languages")
+"""How pydantic names the two, in the order in which the JSON Schema lists them."""
+
+
+def _way_to_describe(value: object) -> str:
+    return WAYS_TO_DESCRIBE[isinstance(value, Mapping)]
+
+
+Described: TypeAlias = Annotated[
+    Annotated[Words, Tag(WAYS_TO_DESCRIBE[0])]
+    | Annotated[dict[Spoken, Words], Field(min_length=1), Tag(WAYS_TO_DESCRIBE[1])],
+    Discriminator(_way_to_describe),
+]
 """Words, or the same in several languages: ``{en: the grey smoke, de: der graue Rauch}``. Instructions and answers of
 other languages than the questions' name a thing by its English words, or the first ones where there are none."""
 Point3: TypeAlias = Annotated[tuple[float, float, float], BeforeValidator(_as_tuple)]

@@ -121,6 +121,8 @@ def _places(mission: MissionFile, world: MapWorld) -> Iterator[tuple[tuple[float
         yield room.viewpoint_m, ("world", "rooms", index, "viewpoint_m"), True
     for index, thing in enumerate(world.objects):
         yield thing.position_m, ("world", "objects", index, "position_m"), False
+    for index, look in enumerate(mission.looks):
+        yield look.viewpoint_m, ("looks", index, "viewpoint_m"), True
     for index, goal in enumerate(mission.goals or ()):
         if goal.position_m is not None:
             yield goal.position_m, ("goals", index, "position_m"), False

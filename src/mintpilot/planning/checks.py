@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from mintpilot.core.geometry import Floats
+from mintpilot.core.message import Message, message, verbatim
 from mintpilot.core.plan import VehicleLimits
 from mintpilot.core.semantic_map import Cell, Knowledge, SemanticMap
 from mintpilot.core.trajectory import Trajectory
@@ -19,7 +20,7 @@ START_SLACK_M = 0.5
 _STRAIGHT_M = 0.01
 
 
-def check_path(path_m: Floats, map: SemanticMap, limits: VehicleLimits) -> str:
+def check_path(path_m: Floats, map: SemanticMap, limits: VehicleLimits) -> Message:
     """Whether a vehicle may fly along the straight pieces of this path.
 
     Everywhere on the way its centre must be at least `VehicleLimits.clearance_m` away from every cell that is occupied
@@ -33,35 +34,35 @@ def check_path(path_m: Floats, map: SemanticMap, limits: VehicleLimits) -> str:
         limits: size of the vehicle.
 
     Returns:
-        The empty string when all is well; else one plain sentence, without a full stop, saying what is wrong and where.
+        The empty message when all is well; else a plain sentence, without a full stop, saying what is wrong and where.
     """
     points = np.asarray(path_m, float)
     if points.ndim != 2 or points.shape[1:] != (3,) or len(points) == 0:
-        return f"the path has shape {points.shape} instead of (n, 3) with n at least 1"
+        return verbatim(f"the path has shape {points.shape} instead of (n, 3) with n at least 1")
     if not np.isfinite(points).all():
-        return f"way-point {int(np.argmin(np.isfinite(points).all(axis=1)))} is not a finite number"
+        return verbatim(f"way-point {int(np.argmin(np.isfinite(points).all(axis=1)))} is not a finite number")
     box = map.frame.box
     inside = ((points >= np.asarray(box.lo_m) - TOLERANCE_M) & (points <= np.asarray(box.hi_m) + TOLERANCE_M)).all(
         axis=1
     )
     if not inside.all():
-        return f"{_at(points[int(np.argmin(inside))])} leaves the map"
+        return message("at {at} the way leaves the map", at=_at(points[int(np.argmin(inside))]))
     near = surroundings(map, points, limits.clearance_m)
     points, piece = first_breach(points, near)
-    return "" if piece < 0 else _sentence(points[piece], points[min(piece + 1, len(points) - 1)], map, near)
+    return Message() if piece < 0 else _sentence(points[piece], points[min(piece + 1, len(points) - 1)], map, near)
 
 
-def check_trajectory(trajectory: Trajectory, map: SemanticMap, limits: VehicleLimits) -> str:
+def check_trajectory(trajectory: Trajectory, map: SemanticMap, limits: VehicleLimits) -> Message:
     """Whether a vehicle may fly this trajectory: `check_path` for the pieces between its samples.
 
     Returns:
-        The empty string when all is well; else one plain sentence, without a full stop, saying what is wrong and where.
+        The empty message when all is well; else a plain sentence, without a full stop, saying what is wrong and where.
     """
     time, position = np.asarray(trajectory.time_s), np.asarray(trajectory.position_m)
     if time.ndim != 1 or len(time) != len(position):
-        return f"the trajectory has {time.shape} times for positions of shape {position.shape}"
+        return verbatim(f"the trajectory has {time.shape} times for positions of shape {position.shape}")
     if not np.isfinite(time).all() or (np.diff(time) <= 0).any():
-        return "the trajectory's times do not ascend"
+        return verbatim("the trajectory's times do not ascend")
     return check_path(position, map, limits)
 
 
@@ -113,21 +114,34 @@ def _is_straight(points: Floats) -> bool:
 
 def _at(point: Floats) -> str:
     x, y, z = point
-    return f"at ({x:.2f}, {y:.2f}, {z:.2f}) m the way"
+    return f"({x:.2f}, {y:.2f}, {z:.2f}) m"
 
 
-def _sentence(a: Floats, b: Floats, map: SemanticMap, near: Surroundings) -> str:
+def _sentence(a: Floats, b: Floats, map: SemanticMap, near: Surroundings) -> Message:
     """What is wrong on the piece from a to b (3,)."""
     cell, share, gap = near.nearest(a, b)
     at = _at(a + share * (b - a))
     keep_m = near.keep * near.frame.resolution_m
     if not map.frame.contains(cell)[0]:
-        return f"{at} comes nearer than {keep_m:.2f} m to the map's border"
+        return message("at {at} the way comes nearer than {keep_m:.2f} m to the map's border", at=at, keep_m=keep_m)
     index = int(np.ravel_multi_index(tuple(cell), map.frame.shape))
     for region in map.regions:
         if region.passable is not Knowledge.YES and index in region.cells:
-            manner = "enters" if gap == 0 else f"comes nearer than {keep_m:.2f} m to"
-            return f"{at} {manner} region '{region.id}', which is not known to be passable"
-    seen = "was never seen" if map.cells[tuple(cell)] == Cell.UNKNOWN else "is occupied"
-    manner = "enters" if gap == 0 else f"comes nearer than {keep_m:.2f} m to"
-    return f"{at} {manner} cell {tuple(int(i) for i in cell)}, which {seen}"
+            what = message("region '{region}', which is not known to be passable", region=region.id)
+            return _too_near(at, keep_m, gap, what)
+    where = str(tuple(int(i) for i in cell))
+    unknown = map.cells[tuple(cell)] == Cell.UNKNOWN
+    return _too_near(
+        at,
+        keep_m,
+        gap,
+        message("cell {cell}, which was never seen", cell=where)
+        if unknown
+        else message("cell {cell}, which is occupied", cell=where),
+    )
+
+
+def _too_near(at: str, keep_m: float, gap: float, what: Message) -> Message:
+    if gap == 0:
+        return message("at {at} the way enters {what}", at=at, what=what)
+    return message("at {at} the way comes nearer than {keep_m:.2f} m to {what}", at=at, keep_m=keep_m, what=what)

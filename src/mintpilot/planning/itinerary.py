@@ -10,6 +10,7 @@ import numpy as np
 from mintpilot.core.errors import InfeasibleError, MissionError
 from mintpilot.core.gap import PRESENT, GapKind
 from mintpilot.core.geometry import Floats, Ints, Vec3
+from mintpilot.core.message import message
 from mintpilot.core.plan import LeftUndone, Leg, Plan, PlanningProblem, Site, Stop
 from mintpilot.planning.approach import approach_cell
 from mintpilot.planning.legs import Cell3
@@ -136,11 +137,19 @@ def itinerary_of(problem: PlanningProblem, terrain: Terrain) -> Itinerary:
     if ordered and all(place is None for place in places.values()):
         for stop in ordered:
             site = stop.sites[0]
-            why = narrow_passages(problem, terrain, site) or (
-                f"no flyable cell within {site.reach_m} m of it is connected to the start; map its surroundings, or "
-                "allow a wider reach"
+            why = narrow_passages(problem, terrain, site) or message(
+                "no flyable cell within {reach_m:g} m of it is connected to the start; map its surroundings, or allow "
+                "a wider reach",
+                reach_m=site.reach_m,
             )
-            raise InfeasibleError(f"stop '{stop.id}' at {site.position_m} can be reached under no hypothesis: {why}")
+            raise InfeasibleError(
+                message(
+                    "stop '{stop}' at {place} can be reached under no hypothesis: {why}",
+                    stop=stop.id,
+                    place=str(site.position_m),
+                    why=why,
+                )
+            )
     return Itinerary(
         problem=problem,
         terrain=terrain,

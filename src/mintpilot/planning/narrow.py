@@ -7,12 +7,13 @@ import math
 import numpy as np
 from scipy import ndimage
 
+from mintpilot.core.message import Message, message
 from mintpilot.core.plan import PlanningProblem, Site
 from mintpilot.core.semantic_map import Cell, Knowledge
 from mintpilot.planning.terrain import Terrain, cells_around, distances_m
 
 
-def narrow_passages(problem: PlanningProblem, terrain: Terrain, site: Site) -> str:
+def narrow_passages(problem: PlanningProblem, terrain: Terrain, site: Site) -> Message:
     """A sentence for a site that a body without size could get to, empty where it could not either.
 
     It names the size of the cells, the width of the body, and how many cells wide a passage must be: the centre of one
@@ -30,10 +31,14 @@ def narrow_passages(problem: PlanningProblem, terrain: Terrain, site: Site) -> s
     cells = cells_around(frame, middle, math.ceil(site.reach_m / frame.resolution_m) + 1)
     cells = cells[distances_m(frame, cells, site.position_m) <= site.reach_m + frame.resolution_m]
     if not (parts[tuple(cells.T)] == parts[tuple(terrain.start)]).any():
-        return ""
+        return Message()
     wide = math.ceil(2 * limits.clearance_m / frame.resolution_m - 1e-9) // 2 * 2 + 1
-    return (
-        f"passages are too narrow: the body is {2 * limits.clearance_m:.2f} m wide (radius and margin on both sides), "
-        f"and with cells of {frame.resolution_m:g} m a passage must be {wide} of them "
-        f"({wide * frame.resolution_m:.2f} m) wide; give a finer map, or reduce the vehicle's radius or margin"
+    return message(
+        "passages are too narrow: the body is {body_m:.2f} m wide (radius and margin on both sides), and with cells of "
+        "{cell_m:g} m a passage must be {cells} of them ({wide_m:.2f} m) wide; give a finer map, or reduce the "
+        "vehicle's radius or margin",
+        body_m=2 * limits.clearance_m,
+        cell_m=frame.resolution_m,
+        cells=wide,
+        wide_m=wide * frame.resolution_m,
     )

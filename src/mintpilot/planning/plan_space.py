@@ -7,6 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from mintpilot.core.gap import BLOCKED, PASSABLE, Assumptions
+from mintpilot.core.message import Message, message
 from mintpilot.core.plan import LeftUndone, Plan, PlanningProblem, Shortage, Stop
 from mintpilot.core.ports import PlanSpace
 from mintpilot.planning.itinerary import itinerary_of, needed_value
@@ -63,16 +64,25 @@ class GridPlanSpace(PlanSpace):
         return self._search.searches
 
     @property
-    def notes(self) -> tuple[str, ...]:
+    def notes(self) -> tuple[Message, ...]:
         """What a bound on the work left out, in plain sentences; empty when every plan is the best one."""
         notes = set(self._selector.notes)
         for cut in self._legs.incomplete:
             if cut.left_out:
                 names = ", ".join(self.itinerary.terrain.gaps[r].id for r in cut.left_out)
-                notes.add(f"more regions than one search can tell apart: {names} taken as blocked on a leg")
+                notes.add(
+                    message(
+                        "more regions than one search can tell apart: {names} taken as blocked on a leg", names=names
+                    )
+                )
             if cut.not_expanded:
-                notes.add(f"{cut.not_expanded} sets of assumptions were left unplanned on a leg; plans stay safe")
-        return tuple(sorted(notes))
+                notes.add(
+                    message(
+                        "{count} sets of assumptions were left unplanned on a leg; plans stay safe",
+                        count=cut.not_expanded,
+                    )
+                )
+        return tuple(sorted(notes, key=str))
 
     def optimistic(self, given: Assumptions) -> Plan | None:
         """The cheapest plan with every open gap at its most favourable value; None where not one stop can be done.

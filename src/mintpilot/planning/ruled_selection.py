@@ -11,6 +11,7 @@ from functools import cached_property
 import numpy as np
 
 from mintpilot.core.geometry import Floats, Ints
+from mintpilot.core.message import Message, message
 from mintpilot.core.plan import LeftUndone, Shortage, Site, Stop
 from mintpilot.core.rule import Ruling
 from mintpilot.core.task import Action
@@ -144,7 +145,7 @@ class RuledSelector:
         self._grid = RuleGrid(ruling=ruling, map=problem.map, limits=problem.limits)
         self._legs = RuledLegs(self._grid, terrain)
         self._made: list[_Made] = []
-        self.notes: set[str] = plain.notes
+        self.notes: set[Message] = plain.notes
 
     @property
     def searches(self) -> int:
@@ -229,7 +230,10 @@ class RuledSelector:
                     continue  # it came there before, for no more, and is no worse off
                 if sum(map(len, seen.values())) >= MAX_LABELS:
                     self.notes.add(
-                        f"more than {MAX_LABELS} combinations of stops and rules; the best plan found is taken"
+                        message(
+                            "more than {most} combinations of stops and rules; the best plan found is taken",
+                            most=MAX_LABELS,
+                        )
                     )
                     break
                 before.append(here.rules)
@@ -324,7 +328,7 @@ class RuledSelector:
             x, y, z = (float(v) for v in self._itinerary.terrain.frame.centres_of(hop.path[-1:])[0])
             site = Site(position_m=(x, y, z), label=END)
             stops.append(Stop(id=END, action=Action.GO, sites=(site,), dwell_s=0.0, price_s=0.0,
-                              text="end the flight where the rules want it"))  # fmt: skip
+                              text=message("end the flight where the rules want it")))  # fmt: skip
             paths.append(hop)
         done = {stop.id for stop in stops}
         why = {one.stop.id: one for one in plain.left}

@@ -9,6 +9,7 @@ import numpy as np
 
 from mintpilot.core.gap import NOWHERE
 from mintpilot.core.geometry import Floats
+from mintpilot.core.message import Message, message
 from mintpilot.core.plan import LeftUndone, Shortage, Stop
 from mintpilot.core.task import Action
 from mintpilot.core.tolerances import TOLERANCE
@@ -90,7 +91,7 @@ class Selector:
     def __init__(self, itinerary: Itinerary, legs: LegTable) -> None:
         self.itinerary, self.legs = itinerary, legs
         self._limits = itinerary.problem.limits
-        self.notes: set[str] = set()
+        self.notes: set[Message] = set()
         self._flights: dict[tuple[Cell3, Cell3, int], float] = {}
         middle = itinerary.terrain.frame.centres_of(np.array([itinerary.start]))[0]
         # From the true start to the middle of its cell.
@@ -214,8 +215,12 @@ class Selector:
         few = tuple(range(len(found.stops)))
         if len(few) > MAX_STOPS:
             self.notes.add(
-                f"{len(few)} stops are more than the {MAX_STOPS} that are weighed against each other exactly; the "
-                "others were put in where they fit"
+                message(
+                    "{count} stops are more than the {most} that are weighed against each other exactly; the others "
+                    "were put in where they fit",
+                    count=len(few),
+                    most=MAX_STOPS,
+                )
             )
             few = _dearest(found, MAX_STOPS)
         small = _only(found, few)

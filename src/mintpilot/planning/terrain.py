@@ -11,6 +11,7 @@ from scipy import ndimage
 from mintpilot.core.errors import InfeasibleError, MissionError
 from mintpilot.core.gap import GapKind, KnowledgeGap
 from mintpilot.core.geometry import Bools, Floats, GridFrame, Ints, Vec3
+from mintpilot.core.message import message
 from mintpilot.core.plan import PlanningProblem, VehicleLimits
 from mintpilot.core.semantic_map import Cell, Knowledge, SemanticMap
 from mintpilot.planning.checks import first_breach
@@ -120,9 +121,14 @@ def start_cell(
                 if first_breach(np.stack([here, centres[i]]), near)[1] < 0:
                     return np.asarray(cells[i], np.int64)
     raise InfeasibleError(
-        f"start ({start_m[0]:.2f}, {start_m[1]:.2f}, {start_m[2]:.2f}) is not in flyable space, and no flyable cell is "
-        f"within {reach_m:.2g} m straight through free space; start from elsewhere, or reduce the vehicle's radius or "
-        "margin"
+        message(
+            "start ({x:.2f}, {y:.2f}, {z:.2f}) is not in flyable space, and no flyable cell is within {reach_m:.2g} m "
+            "straight through free space; start from elsewhere, or reduce the vehicle's radius or margin",
+            x=start_m[0],
+            y=start_m[1],
+            z=start_m[2],
+            reach_m=reach_m,
+        )
     )
 
 

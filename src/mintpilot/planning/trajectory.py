@@ -6,6 +6,7 @@ import numpy as np
 
 from mintpilot.core.errors import InfeasibleError, InputError
 from mintpilot.core.geometry import Floats
+from mintpilot.core.message import message
 from mintpilot.core.plan import VehicleLimits
 from mintpilot.core.semantic_map import SemanticMap
 from mintpilot.core.trajectory import Trajectory
@@ -66,7 +67,9 @@ def plan_trajectory(
         raise InputError(f"headings {start_yaw_rad} and {end_yaw_rad}: must be finite numbers of radians")
     problem = check_path(path, map, limits)
     if problem:
-        raise InfeasibleError(f"this path cannot be flown: {problem}. Plan again on the present map")
+        raise InfeasibleError(
+            message("this path cannot be flown: {problem}. Plan again on the present map", problem=problem)
+        )
     sight = Sight(map, limits, path)
     corners, stops = _corners(path, sight) if shortcut else _as_it_is(path)
     yaw_ends = (start_yaw_rad, end_yaw_rad)
@@ -133,7 +136,7 @@ def _clear_motion(
             return motion
         live = np.flatnonzero(corner_mps > 0)
         if not len(live):  # stopping everywhere is the polyline itself, which is clear: only a defect can lead here
-            raise InfeasibleError("no motion along this path keeps its clearance. Plan again with more margin")
+            raise InfeasibleError(message("no motion along this path keeps its clearance. Plan again with more margin"))
         guilty = np.unique(live[np.argmin(np.abs(bad[:, None] - motion.corner_s[None, live]), axis=1)])
         corner_mps[guilty] *= 0.8
         corner_mps[corner_mps < _SLOWEST_MPS] = 0.0

@@ -8,6 +8,7 @@ from scipy import ndimage
 
 from mintpilot.core.gap import Assumptions
 from mintpilot.core.geometry import Bools, Ints
+from mintpilot.core.message import Message, message
 from mintpilot.core.plan import Plan, PlanningProblem
 from mintpilot.core.policy import GridCell, policy_task
 from mintpilot.core.ports import Planner, PlanSpace, Policy
@@ -58,20 +59,24 @@ class _Guide:
             return None
         return found.cost, found.cells
 
-    def notes(self) -> tuple[str, ...]:
+    def notes(self) -> tuple[Message, ...]:
         """Where the policy falls short, as a sentence."""
         if not self._lost:
             return ()
         return (
-            f"the policy did not arrive in {self._lost} of {self._asked} flights that are possible; plans stay safe, "
-            "but may be dearer than need be, or missing",
+            message(
+                "the policy did not arrive in {lost} of {asked} flights that are possible; plans stay safe, but may be "
+                "dearer than need be, or missing",
+                lost=self._lost,
+                asked=self._asked,
+            ),
         )
 
 
 class _PolicyPlanSpace(PlanSpace):
     """The plans, and what the policy did not find."""
 
-    def __init__(self, space: PlanSpace, shortfalls: Callable[[], tuple[str, ...]]) -> None:
+    def __init__(self, space: PlanSpace, shortfalls: Callable[[], tuple[Message, ...]]) -> None:
         self._space, self._shortfalls = space, shortfalls
 
     @property
@@ -79,7 +84,7 @@ class _PolicyPlanSpace(PlanSpace):
         return self._space.searches
 
     @property
-    def notes(self) -> tuple[str, ...]:
+    def notes(self) -> tuple[Message, ...]:
         return (*self._space.notes, *self._shortfalls())
 
     def optimistic(self, given: Assumptions) -> Plan | None:

@@ -7,6 +7,7 @@ from typing import Final
 import numpy as np
 
 from mintpilot.core.gap import Belief
+from mintpilot.core.message import Message, joined, message
 from mintpilot.core.mission import AskingSettings
 from mintpilot.core.plan import Plan
 from mintpilot.core.tolerances import TOLERANCE
@@ -15,19 +16,18 @@ from mintpilot.reasoning.classes import cheapest_under, class_entropy_bits, cost
 from mintpilot.reasoning.situation import may_fail, succeeds
 
 _BECAUSE: Final = {
-    StopReason.NO_GAPS: "Nothing that is unknown bears on the task.",
-    StopReason.ONE_CLASS: "One way to fly is right with {top:.1%} probability.",
-    StopReason.GOOD_FOR_ALL: "One plan succeeds whatever the answers would be.",
-    StopReason.NO_GAIN: "No question that is left is worth asking (the best has a gain of {gain:.3f} bits).",
-    StopReason.BUDGET: "All questions that are allowed have been asked.",
-    StopReason.SILENCE: "The operator does not answer.",
-    StopReason.INFEASIBLE: "Nothing can be flown under anything that is still possible.",
-    StopReason.PRICE: "However it were asked on, it would cost more than it saves.",
-    StopReason.WAITING: "Waiting for an answer may lose more than it gives: the battery runs meanwhile.",
-    StopReason.LOOK: "A look tells more a second than any question.",
-    StopReason.NEVER_ASKS: "This method does not ask.",
-    StopReason.LIMIT: "A bound on the work was reached.",
+    StopReason.NO_GAPS: message("Nothing that is unknown bears on the task."),
+    StopReason.GOOD_FOR_ALL: message("One plan succeeds whatever the answers would be."),
+    StopReason.BUDGET: message("All questions that are allowed have been asked."),
+    StopReason.SILENCE: message("The operator does not answer."),
+    StopReason.INFEASIBLE: message("Nothing can be flown under anything that is still possible."),
+    StopReason.PRICE: message("However it were asked on, it would cost more than it saves."),
+    StopReason.WAITING: message("Waiting for an answer may lose more than it gives: the battery runs meanwhile."),
+    StopReason.LOOK: message("A look tells more a second than any question."),
+    StopReason.NEVER_ASKS: message("This method does not ask."),
+    StopReason.LIMIT: message("A bound on the work was reached."),
 }
+"""Those without figures."""
 
 
 def bound_s(plan: Plan | None, mint: Mint, belief: Belief, settings: AskingSettings) -> float:
@@ -79,28 +79,53 @@ def certify(
     bound, outside = bound_s(plan, mint, belief, settings), mass_outside(plan, mint, settings)
     if reason is StopReason.GOOD_FOR_ALL and not bound <= settings.delta_c_s + TOLERANCE:
         reason = StopReason.NO_GAIN  # delta_c is spent once: what costs more is not good for all
-    because = _BECAUSE[reason].format(top=top, gain=best_gain_bits)
     return Certificate(
         reason=reason,
         top_class_probability=top,
         entropy_bits=class_entropy_bits(mint),
         best_gain_bits=best_gain_bits,
         bound_s=bound,
-        text=f"{because} {_consequence(plan, bound, outside, settings.delta_c_s)}",
+        text=joined([_because(reason, top, best_gain_bits), _consequence(plan, bound, outside, settings.delta_c_s)]),
         mass_outside=outside,
     )
 
 
-def _consequence(plan: Plan | None, bound: float, outside: float, delta_c_s: float) -> str:
+def _because(reason: StopReason, top: float, gain_bits: float) -> Message:
+    if reason is StopReason.ONE_CLASS:
+        return message("One way to fly is right with {top:.1%} probability.", top=top)
+    if reason is StopReason.NO_GAIN:
+        return message(
+            "No question that is left is worth asking (the best has a gain of {gain_bits:.3f} bits).",
+            gain_bits=gain_bits,
+        )
+    return _BECAUSE[reason]
+
+
+def _consequence(plan: Plan | None, bound: float, outside: float, delta_c_s: float) -> Message:
     if plan is None:
-        return "No safe plan is left to fly."
-    beyond = f"with {outside:.1%} probability it fails, or is more than {delta_c_s:g} s dearer than the best"
+        return message("No safe plan is left to fly.")
+    beyond = message(
+        "with {outside:.1%} probability it fails, or is more than {delta_c_s:g} s dearer than the best",
+        outside=outside,
+        delta_c_s=delta_c_s,
+    )
     if np.isinf(bound):
-        return f"The plan of {plan.cost_s:.1f} s is the best that is safe; {beyond}."
+        return message(
+            "The plan of {cost_s:.1f} s is the best that is safe; {beyond}.", cost_s=plan.cost_s, beyond=beyond
+        )
     if bound > delta_c_s + TOLERANCE:
-        return f"The plan of {plan.cost_s:.1f} s is at most {bound:.1f} s dearer than the best; {beyond}."
-    text = f"No further answer would change the flight of {plan.cost_s:.1f} s by more than {bound:.1f} s."
+        return message(
+            "The plan of {cost_s:.1f} s is at most {bound_s:.1f} s dearer than the best; {beyond}.",
+            cost_s=plan.cost_s,
+            bound_s=bound,
+            beyond=beyond,
+        )
+    text = message(
+        "No further answer would change the flight of {cost_s:.1f} s by more than {bound_s:.1f} s.",
+        cost_s=plan.cost_s,
+        bound_s=bound,
+    )
     if not plan.leaves_undone:
         return text
-    left = "; ".join(f"{one.stop.text or one.stop.id} ({one.reason})" for one in plan.leaves_undone)
-    return f"{text} It leaves undone: {left}."
+    left = [message("{what} ({why})", what=one.stop.said, why=one.reason) for one in plan.leaves_undone]
+    return joined([text, message("It leaves undone: {what}.", what=joined(left, "; "))])

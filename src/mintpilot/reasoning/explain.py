@@ -8,6 +8,7 @@ import numpy as np
 
 from mintpilot.core.gap import Assumptions, Belief, GapKind, KnowledgeGap
 from mintpilot.core.geometry import Floats
+from mintpilot.core.message import Message, message
 from mintpilot.core.mission import AskingSettings, CriticalityRule
 from mintpilot.core.plan import Plan
 from mintpilot.core.ports import ImpactMetric, PlanSpace
@@ -48,7 +49,11 @@ def explain_gaps(
         bits = entropy_bits(belief.marginal(gap.id))
         relevant, figures = node is not None, _figures(gap, best, worst, divergence, bits)
         set_aside = _set_aside(best, worst, settings)
-        why = f"Matters: {figures}." if relevant else f"Does not matter: {figures}{set_aside}."
+        why = (
+            message("Matters: {figures}.", figures=figures)
+            if relevant
+            else message("Does not matter: {figures}{set_aside}.", figures=figures, set_aside=set_aside)
+        )
         made.append(
             GapExplanation(
                 gap_id=gap.id,
@@ -56,7 +61,7 @@ def explain_gaps(
                 kind=gap.kind.value,
                 asked=False,
                 relevant=relevant,
-                why=why if figures else "Nothing can be flown, whatever it is.",
+                why=why if figures else message("Nothing can be flown, whatever it is."),
                 figures=figures,
                 set_aside=set_aside,
                 cost_if_favourable_s=best.cost_s if best else None,
@@ -108,43 +113,72 @@ def decided(explanation: GapExplanation, asked: bool, looked: bool = False) -> G
     """The explanation once it is known whether the gap was asked about, or looked at."""
     if not explanation.figures:
         return replace(explanation, asked=asked)
-    if asked:
-        why = f"Asked: {explanation.figures}."
-        if looked:
-            why = f"Looked at, and asked: {explanation.figures}."
+    figures = explanation.figures
+    if asked and looked:
+        why = message("Looked at, and asked: {figures}.", figures=figures)
+    elif asked:
+        why = message("Asked: {figures}.", figures=figures)
     elif looked:
-        why = f"Looked at: {explanation.figures}."
+        why = message("Looked at: {figures}.", figures=figures)
     elif explanation.relevant:
-        why = f"Not asked: {explanation.figures}, but other answers settled the plan."
+        why = message("Not asked: {figures}, but other answers settled the plan.", figures=figures)
     else:
-        why = f"Not asked: {explanation.figures}{explanation.set_aside}."
+        why = message("Not asked: {figures}{set_aside}.", figures=figures, set_aside=explanation.set_aside)
     return replace(explanation, asked=asked, why=why)
 
 
-def _figures(gap: KnowledgeGap, best: Plan | None, worst: Plan | None, divergence_m: float | None, bits: float) -> str:
+def _figures(
+    gap: KnowledgeGap, best: Plan | None, worst: Plan | None, divergence_m: float | None, bits: float
+) -> Message:
     """What hangs on the gap, in figures; empty where nothing can be flown whatever it is."""
     if best is None:
-        return ""
-    if worst is None:
-        figures = f"the best plan takes {best.cost_s:.1f} s one way, and there is none the other way"
-    elif len(worst.leaves_undone) > len(best.leaves_undone):
-        more = len(worst.leaves_undone) - len(best.leaves_undone)
-        stops = "a stop" if more == 1 else f"{more} stops"
-        figures = f"the best plan takes {best.cost_s:.1f} s one way; the other way it leaves {stops} more undone"
-    else:
-        extra = worst.cost_s - best.cost_s
-        apart = "" if divergence_m is None else f", {divergence_m:.1f} m apart"
-        figures = f"the best plan takes {best.cost_s:.1f} s or {worst.cost_s:.1f} s ({extra:.1f} s more{apart})"
+        return Message()
+    figures = _difference(best, worst, divergence_m)
     if gap.kind is GapKind.TARGET:
-        figures += f"; {bits:.2f} bits are not known"
+        return message("{figures}; {bits:.2f} bits are not known", figures=figures, bits=bits)
     return figures
 
 
-def _set_aside(best: Plan | None, worst: Plan | None, settings: AskingSettings) -> str:
+def _difference(best: Plan, worst: Plan | None, divergence_m: float | None) -> Message:
+    best_s = best.cost_s
+    if worst is None:
+        return message("the best plan takes {best_s:.1f} s one way, and there is none the other way", best_s=best_s)
+    more = len(worst.leaves_undone) - len(best.leaves_undone)
+    if more == 1:
+        return message(
+            "the best plan takes {best_s:.1f} s one way; the other way it leaves a stop more undone", best_s=best_s
+        )
+    if more > 1:
+        return message(
+            "the best plan takes {best_s:.1f} s one way; the other way it leaves {more} stops more undone",
+            best_s=best_s,
+            more=more,
+        )
+    worst_s, extra_s = worst.cost_s, worst.cost_s - best.cost_s
+    if divergence_m is None:
+        return message(
+            "the best plan takes {best_s:.1f} s or {worst_s:.1f} s ({extra_s:.1f} s more)",
+            best_s=best_s,
+            worst_s=worst_s,
+            extra_s=extra_s,
+        )
+    return message(
+        "the best plan takes {best_s:.1f} s or {worst_s:.1f} s ({extra_s:.1f} s more, {apart_m:.1f} m apart)",
+        best_s=best_s,
+        worst_s=worst_s,
+        extra_s=extra_s,
+        apart_m=divergence_m,
+    )
+
+
+def _set_aside(best: Plan | None, worst: Plan | None, settings: AskingSettings) -> Message:
     """Why a gap that no plan depends on is left alone; follows the figures."""
     if best is None or (worst is not None and worst.cost_s - best.cost_s > settings.delta_c_s + TOLERANCE):
-        return ", but it is as good as known"
-    limits = f"{settings.delta_c_s:.1f} s"
+        return message(", but it is as good as known")
     if settings.rule is CriticalityRule.PAPER:
-        limits += f" and {settings.delta_d_m:.1f} m"
-    return f"; differences up to {limits} are not worth a question"
+        return message(
+            "; differences up to {delta_c_s:.1f} s and {delta_d_m:.1f} m are not worth a question",
+            delta_c_s=settings.delta_c_s,
+            delta_d_m=settings.delta_d_m,
+        )
+    return message("; differences up to {delta_c_s:.1f} s are not worth a question", delta_c_s=settings.delta_c_s)

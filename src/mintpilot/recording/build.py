@@ -14,8 +14,9 @@ from itertools import pairwise
 import numpy as np
 from pydantic import JsonValue
 
-from mintpilot.core.events import Asked, Deliberated, LegFlown, PlanChosen
+from mintpilot.core.events import Asked, Deliberated, LegFlown, MissionStarted, PlanChosen
 from mintpilot.core.gap import GapKind, KnowledgeGap
+from mintpilot.core.message import message, verbatim
 from mintpilot.core.mission import Outcome, Verdict
 from mintpilot.core.rule import Rule
 from mintpilot.core.semantic_map import SemanticMap
@@ -43,8 +44,9 @@ from mintpilot.recording.record import (
 )
 from mintpilot.recording.tree_data import Told, class_records, tree_record
 from mintpilot.recording.words import say, say_evidence, say_query
+from mintpilot.wording.speech import Speech
 
-_UNDECIDED = "The mission ended before this was decided."
+_UNDECIDED = message("The mission ended before this was decided.")
 
 
 def build_record(history: History, *, run_dir: str = "", unfinished: str = "") -> MissionRecord:
@@ -56,6 +58,7 @@ def build_record(history: History, *, run_dir: str = "", unfinished: str = "") -
         unfinished: for a mission without a verdict, why; it then counts as aborted.
     """
     started, ended, mint = history.started, history.ended, history.mint
+    speech = speech_of(started)
     told = Told(replies=history.replies, asked=history.asked_gaps, flown=history.flown_signature)
     certificate = history.chosen[-1].certificate if history.chosen else None
     mission_legs = [leg for leg in history.legs if leg.phase != "survey"]
@@ -71,30 +74,32 @@ def build_record(history: History, *, run_dir: str = "", unfinished: str = "") -
         language=started.language if started else "en",
         language_model=started.language_model if started else "template",
         outcome=ended.verdict.outcome if ended else Outcome.ABORTED,
-        reason=ended.verdict.reason if ended else unfinished or "The mission was not finished.",
+        reason=speech(
+            ended.verdict.reason if ended else verbatim(unfinished) or message("The mission was not finished.")
+        ),
         complete=ended is not None,
         seed=started.seed if started else None,
         settings=_settings(started.mission) if started else {},
         versions=versions(),
-        gaps=gap_records(history.gaps, history.chosen, history.asked_gaps),
-        questions=tuple(_question(asked, history.gaps) for asked in history.asked),
-        rounds=tuple(_round(deliberated) for deliberated in history.deliberations),
-        tree=tree_record(mint, history.gaps, told) if mint else None,
-        plan_classes=class_records(mint, history.gaps, told) if mint else (),
-        certificate=_certificate(certificate) if certificate else None,
-        achieved=_achieved(ended.verdict) if ended else (),
-        left=_left(ended.verdict) if ended else (),
-        looks=_looks(ended.verdict, history.map, run_dir) if ended else (),
+        gaps=gap_records(history.gaps, history.chosen, history.asked_gaps, speech),
+        questions=tuple(_question(asked, history.gaps, speech) for asked in history.asked),
+        rounds=tuple(_round(deliberated, speech) for deliberated in history.deliberations),
+        tree=tree_record(mint, history.gaps, told, speech=speech) if mint else None,
+        plan_classes=class_records(mint, history.gaps, told, speech=speech) if mint else (),
+        certificate=_certificate(certificate, speech) if certificate else None,
+        achieved=_achieved(ended.verdict, speech) if ended else (),
+        left=_left(ended.verdict, speech) if ended else (),
+        looks=_looks(ended.verdict, history.map, run_dir, speech) if ended else (),
         rules=_rules(started.task.rules, ended.verdict if ended else None) if started else (),
         waiting=_waiting(ended.verdict) if ended else None,
         flight=flight,
         survey=flight_record(survey_legs) if survey_legs else None,
-        seen=_seen(history.map) if history.map else (),
+        seen=_seen(history.map, speech) if history.map else (),
         frames=history.frames,
         timings_s=dict(history.timings_s),
-        notices=tuple(NoticeRecord(kind=n.kind, text=n.text) for n in history.notices),
+        notices=tuple(NoticeRecord(kind=n.kind, text=speech(n.text)) for n in history.notices),
         orders=tuple(
-            OrderRecord(order=o.order, operator=o.operator, text=o.text, answer=o.answer, time_s=o.time_s)
+            OrderRecord(order=o.order, operator=o.operator, text=o.text, answer=speech(o.answer), time_s=o.time_s)
             for o in history.orders
         ),
         run_dir=run_dir,
@@ -113,16 +118,21 @@ def versions() -> dict[str, str]:
     return found
 
 
-def _achieved(verdict: Verdict) -> tuple[AchievedRecord, ...]:
-    return tuple(AchievedRecord(n=one.n, text=one.text, at_s=one.at_s) for one in verdict.achieved)
+def speech_of(started: MissionStarted | None) -> Speech:
+    """The mission's language."""
+    return Speech() if started is None else Speech(started.language, dict(started.names))
 
 
-def _looks(verdict: Verdict, map: SemanticMap | None, run_dir: str) -> tuple[LookRecord, ...]:
+def _achieved(verdict: Verdict, speech: Speech) -> tuple[AchievedRecord, ...]:
+    return tuple(AchievedRecord(n=one.n, text=speech(one.text), at_s=one.at_s) for one in verdict.achieved)
+
+
+def _looks(verdict: Verdict, map: SemanticMap | None, run_dir: str, speech: Speech) -> tuple[LookRecord, ...]:
     views = {o.id: o.best_view for o in map.objects} if map is not None and run_dir else {}
     return tuple(
         LookRecord(
             n=one.n,
-            text=one.text,
+            text=speech(one.text),
             result=one.result,
             what=one.what,
             count=one.count,
@@ -145,12 +155,12 @@ def _waiting(verdict: Verdict) -> WaitingRecord:
     return WaitingRecord(delay_s=verdict.waiting.delay_s, hidden_s=verdict.waiting.hidden_s)
 
 
-def _left(verdict: Verdict) -> tuple[LeftRecord, ...]:
+def _left(verdict: Verdict, speech: Speech) -> tuple[LeftRecord, ...]:
     return tuple(
         LeftRecord(
             n=one.n,
-            text=one.text,
-            reason=one.reason,
+            text=speech(one.text),
+            reason=speech(one.reason),
             resource=one.resource,
             needed=one.needed_s,
             available=one.available_s,
@@ -182,7 +192,7 @@ def flight_record(legs: Sequence[LegFlown]) -> FlightRecord:
 
 
 def gap_records(
-    gaps: Iterable[KnowledgeGap], chosen: Iterable[PlanChosen], asked: frozenset[str]
+    gaps: Iterable[KnowledgeGap], chosen: Iterable[PlanChosen], asked: frozenset[str], speech: Speech
 ) -> tuple[GapRecord, ...]:
     """Every gap with its latest explanation; what was once asked keeps the explanation that says so."""
     explanations: dict[str, GapExplanation] = {}
@@ -193,12 +203,14 @@ def gap_records(
                 explanations[explanation.gap_id] = explanation
     known = {gap.id: gap for gap in gaps}
     return tuple(
-        _gap(gap_id, known.get(gap_id), explanations.get(gap_id), gap_id in asked)
+        _gap(gap_id, known.get(gap_id), explanations.get(gap_id), gap_id in asked, speech)
         for gap_id in dict.fromkeys((*known, *explanations))
     )
 
 
-def _gap(gap_id: str, gap: KnowledgeGap | None, explanation: GapExplanation | None, asked: bool) -> GapRecord:
+def _gap(
+    gap_id: str, gap: KnowledgeGap | None, explanation: GapExplanation | None, asked: bool, speech: Speech
+) -> GapRecord:
     description = gap.description if gap else explanation.description if explanation else gap_id
     kind = gap.kind if gap else GapKind(explanation.kind) if explanation and explanation.kind in set(GapKind) else None
     values = zip(gap.values, gap.prior, strict=True) if gap else ()
@@ -206,11 +218,11 @@ def _gap(gap_id: str, gap: KnowledgeGap | None, explanation: GapExplanation | No
         id=gap_id,
         kind=kind,
         subject=gap.subject if gap else "",
-        description=description,
-        values=tuple(ValueRecord(value=v, prior=p, means=say(gap, [v]) if gap else v) for v, p in values),
+        description=speech.thing(description),
+        values=tuple(ValueRecord(value=v, prior=p, means=speech(say(gap, [v])) if gap else v) for v, p in values),
         asked=asked or bool(explanation and explanation.asked),
         relevant=explanation.relevant if explanation else None,
-        why=explanation.why if explanation else _UNDECIDED,
+        why=speech(explanation.why if explanation else _UNDECIDED),
         cost_if_favourable_s=explanation.cost_if_favourable_s if explanation else None,
         cost_if_unfavourable_s=explanation.cost_if_unfavourable_s if explanation else None,
         divergence_m=explanation.divergence_m if explanation else None,
@@ -220,7 +232,7 @@ def _gap(gap_id: str, gap: KnowledgeGap | None, explanation: GapExplanation | No
     )
 
 
-def _question(asked: Asked, gaps: Sequence[KnowledgeGap]) -> QuestionRecord:
+def _question(asked: Asked, gaps: Sequence[KnowledgeGap], speech: Speech) -> QuestionRecord:
     question, scored, answer = asked.question, asked.scored, asked.answer
     return QuestionRecord(
         text=question.text,
@@ -244,12 +256,12 @@ def _question(asked: Asked, gaps: Sequence[KnowledgeGap]) -> QuestionRecord:
         first_text=asked.first_text,
         better_s=asked.better_s,
         understood_by=answer.understood_by,
-        also=tuple(say_evidence(one, gaps) for one in answer.also),
+        also=tuple(speech(say_evidence(one, gaps)) for one in answer.also),
         proposed_by=scored.proposed_by,
     )
 
 
-def _round(deliberated: Deliberated) -> RoundRecord:
+def _round(deliberated: Deliberated, speech: Speech) -> RoundRecord:
     chosen = deliberated.chosen
     scored = [*([chosen] if chosen else []), *deliberated.alternatives, *deliberated.proposed]
     return RoundRecord(
@@ -262,7 +274,7 @@ def _round(deliberated: Deliberated) -> RoundRecord:
         proposals=tuple(
             CutRecord(
                 query=cut.query.id,
-                words=say_query(cut.query, deliberated.gaps),
+                words=speech(say_query(cut.query, deliberated.gaps)),
                 proposed_by=cut.proposed_by,
                 gain_bits=cut.gain_bits,
                 score=cut.score,
@@ -275,10 +287,10 @@ def _round(deliberated: Deliberated) -> RoundRecord:
     )
 
 
-def _certificate(certificate: Certificate) -> CertificateRecord:
+def _certificate(certificate: Certificate, speech: Speech) -> CertificateRecord:
     return CertificateRecord(
         reason=certificate.reason,
-        text=certificate.text,
+        text=speech(certificate.text),
         top_class_probability=certificate.top_class_probability,
         entropy_bits=certificate.entropy_bits,
         best_gain_bits=certificate.best_gain_bits,
@@ -286,7 +298,7 @@ def _certificate(certificate: Certificate) -> CertificateRecord:
     )
 
 
-def _seen(seen: SemanticMap) -> tuple[SeenRecord, ...]:
+def _seen(seen: SemanticMap, speech: Speech) -> tuple[SeenRecord, ...]:
     objects = (
         SeenRecord(
             id=o.id,
@@ -303,7 +315,7 @@ def _seen(seen: SemanticMap) -> tuple[SeenRecord, ...]:
         SeenRecord(
             id=r.id,
             kind="region",
-            description=r.description or r.id,
+            description=speech.thing(r.description) or r.id,
             position_m=_middle(seen, r.cells),
             state=r.passable.value,
             view=r.best_view,
@@ -314,7 +326,7 @@ def _seen(seen: SemanticMap) -> tuple[SeenRecord, ...]:
         SeenRecord(
             id=r.id,
             kind="room",
-            description=r.description or r.id,
+            description=speech.thing(r.description) or r.id,
             position_m=r.door_m.centre_m,
             state=r.occupied.value,
             view=r.best_view,

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import json
+import math
 import struct
 from collections import Counter
 from dataclasses import dataclass
@@ -13,6 +14,8 @@ from typing import Any, Final
 
 from mintpilot.core.errors import RecordError
 from mintpilot.core.events import MissionStarted, Stepped
+from mintpilot.core.geometry import Vec3
+from mintpilot.core.georeference import Georeference
 from mintpilot.core.inputs import Ticked
 from mintpilot.recording.event_log import EVENTS_FILE, read_event_log
 from mintpilot.recording.mcap_log import MCAP_FILE
@@ -106,14 +109,28 @@ def recover(path: Path, out: Path) -> int:
     return len(messages)
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Fix:
+    """Where the drone was."""
+
+    time_s: float
+    position_m: Vec3
+    yaw_rad: float
+    endurance_left_s: float | None
+
+
 def track_csv(path: Path) -> str:
-    """Where the drone was, as CSV: mission seconds, metres, heading, battery. Raises `RecordError`."""
+    """Where the drone was, as CSV: mission seconds, metres, heading, battery. Raises `RecordError`.
+
+    A ``flight.mcap`` without its run folder says nothing of the battery: that column is empty.
+    """
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(("time_s", "x_m", "y_m", "z_m", "yaw_rad", "endurance_left_s"))
-    for time_s, vehicle in _track(path)[1]:
-        writer.writerow((f"{time_s:.3f}", *(f"{value:.4f}" for value in vehicle.position_m), f"{vehicle.yaw_rad:.4f}",
-                         f"{vehicle.endurance_left_s:.2f}"))  # fmt: skip
+    for fix in _track(path)[1]:
+        left = "" if fix.endurance_left_s is None else f"{fix.endurance_left_s:.2f}"
+        place = (f"{value:.4f}" for value in fix.position_m)
+        writer.writerow((f"{fix.time_s:.3f}", *place, f"{fix.yaw_rad:.4f}", left))
     return text.getvalue()
 
 
@@ -125,25 +142,53 @@ def track_geojson(path: Path) -> str:
     """
     reference, track = _track(path)
     if reference is None:
-        raise RecordError(f"{path}: the mission's map has no georeference; export CSV, in metres on the map")
+        raise RecordError(f"{path}: there is no georeference of the mission's map in it; export CSV, in metres")
     line = []
-    for _, vehicle in track:
-        place = reference.geodetic(vehicle.position_m)
+    for fix in track:
+        place = reference.geodetic(fix.position_m)
         line.append([place.longitude_deg, place.latitude_deg, place.altitude_m])
     feature = {"type": "Feature", "geometry": {"type": "LineString", "coordinates": line},
-               "properties": {"what": "flown", "seconds": [round(time_s, 3) for time_s, _ in track]}}  # fmt: skip
+               "properties": {"what": "flown", "seconds": [round(fix.time_s, 3) for fix in track]}}  # fmt: skip
     return json.dumps({"type": "FeatureCollection", "features": [feature]}) + "\n"
 
 
-def _track(path: Path) -> tuple[Any, list[tuple[float, Any]]]:
-    reference, track = None, []
-    for logged in read_event_log(path):
+def _track(path: Path) -> tuple[Georeference | None, list[_Fix]]:
+    """The map's georeference and every place; of a ``flight.mcap`` in a run folder from the events beside it."""
+    events = path / EVENTS_FILE if path.is_dir() else path.with_name(EVENTS_FILE) if path.name == MCAP_FILE else path
+    if path.suffix == ".mcap" and not (path.name == MCAP_FILE and events.exists()):
+        return None, _places(path)
+    reference: Georeference | None = None
+    track = []
+    for logged in read_event_log(events):
         event = logged.event
         if isinstance(event, MissionStarted):
             reference = event.mission.georeference
         elif isinstance(event, Stepped) and isinstance(event.input, Ticked) and event.input.vehicle is not None:
-            track.append((event.input.time_s, event.input.vehicle))
+            at = event.input.vehicle
+            track.append(
+                _Fix(time_s=event.input.time_s, position_m=at.position_m, yaw_rad=at.yaw_rad,
+                     endurance_left_s=at.endurance_left_s)
+            )  # fmt: skip
     return reference, track
+
+
+def _places(file: Path) -> list[_Fix]:
+    """Every place in an MCAP file; its first message is the mission's beginning."""
+    from foxglove_schemas_protobuf.FrameTransform_pb2 import FrameTransform
+
+    messages, _ = _messages(file)
+    begun_ns = min((message.log_time for _, _, message in messages), default=0)
+    track = []
+    for schema, channel, message in messages:
+        if channel.topic != "/tf" or schema is None or schema.name != FrameTransform.DESCRIPTOR.full_name:
+            continue
+        transform = FrameTransform.FromString(message.data)
+        at, turn = transform.translation, transform.rotation
+        track.append(
+            _Fix(time_s=(message.log_time - begun_ns) / 1e9, position_m=(at.x, at.y, at.z),
+                 yaw_rad=2 * math.atan2(turn.z, turn.w), endurance_left_s=None)
+        )  # fmt: skip
+    return track
 
 
 def _file_in(path: Path) -> Path:

@@ -36,10 +36,14 @@ from mintpilot.core.events import (
 )
 from mintpilot.core.geometry import Floats
 from mintpilot.core.inputs import Ticked
+from mintpilot.core.message import message
 from mintpilot.core.observation import Frame
 from mintpilot.core.ports import Recorder
 from mintpilot.recording import mcap_scene as scene
+from mintpilot.recording.build import speech_of
 from mintpilot.recording.tree_data import tree_record
+from mintpilot.recording.words import ORDER_WORDS
+from mintpilot.wording.speech import Speech
 
 MCAP_FILE: Final = "flight.mcap"
 PICTURE_S: Final = 1.0
@@ -68,6 +72,7 @@ class McapRecorder(Recorder):
             self._file = _WriteThrough(os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o644))
         except OSError as error:
             raise RecordError(f"cannot write {path}: {error.strerror}; give a new file") from error
+        self._speech = Speech()
         self._writer = Writer(cast("IO[bytes]", self._file), use_chunking=False, compression=CompressionType.NONE)
         self._writer.start(profile="", library="mintpilot")
         self._begun_ns = int(clock() * 1e9)
@@ -98,11 +103,12 @@ class McapRecorder(Recorder):
             case PlanChosen():
                 if event.plan is not None and event.plan.legs:
                     self._proto("/path/planned", self._path(event.plan.path_m))
-                self._say("info", event.certificate.text)
+                self._say("info", self._speech(event.certificate.text))
             case Noticed():
-                self._say("warning", event.text)
+                self._say("warning", self._speech(event.text))
             case OrderTaken():
-                self._say("info", f"Order: {event.order.value}. {event.answer}")
+                order = message("Order: {order}. {answer}", order=ORDER_WORDS[event.order], answer=event.answer)
+                self._say("info", self._speech(order))
             case MissionStarted() | Deliberated() | Asked() | MissionEnded():
                 self._told(event)
             case _:
@@ -135,14 +141,21 @@ class McapRecorder(Recorder):
     def _told(self, event: MissionStarted | Deliberated | Asked | MissionEnded) -> None:
         match event:
             case MissionStarted():
+                self._speech = speech_of(event)
                 self._json("/mission", {"name": event.mission.name, "instruction": event.mission.instruction})
             case Deliberated():
                 self._json(
                     "/gaps",
-                    {"gaps": [{"id": g.id, "what": g.description, "prior": list(g.prior)} for g in event.gaps]},
+                    {
+                        "gaps": [
+                            {"id": g.id, "what": self._speech.thing(g.description), "prior": list(g.prior)}
+                            for g in event.gaps
+                        ]
+                    },
                 )
                 if event.mint is not None:
-                    self._json("/tree", tree_record(event.mint, event.gaps).model_dump(mode="json"))
+                    tree = tree_record(event.mint, event.gaps, speech=self._speech)
+                    self._json("/tree", tree.model_dump(mode="json"))
                 if event.chosen is not None:
                     chosen = event.chosen
                     self._json(
@@ -153,8 +166,9 @@ class McapRecorder(Recorder):
                                        "text": event.answer.text, "latency_s": event.answer.latency_s})  # fmt: skip
                 self._say("info", f"{event.question.text} {event.answer.reply.value}")
             case MissionEnded():
-                self._json("/verdict", {"outcome": event.verdict.outcome.value, "reason": event.verdict.reason})
-                self._say("info", f"{event.verdict.outcome.value}: {event.verdict.reason}")
+                outcome, reason = event.verdict.outcome.value, self._speech(event.verdict.reason)
+                self._json("/verdict", {"outcome": outcome, "reason": reason})
+                self._say("info", f"{outcome}: {reason}")
 
     def _step(self, event: Stepped) -> None:
         self._mission_s = max(self._mission_s, event.input.time_s)

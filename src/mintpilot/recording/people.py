@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from mintpilot.core.message import Message, Named, message
 from mintpilot.core.mission import Sight
 from mintpilot.core.observation import PERSON
 from mintpilot.recording.frames import FRAMES, frame_name
 from mintpilot.recording.record import LookRecord, MissionRecord, Part, SeenRecord
-from mintpilot.recording.spoken import PERSONS, SIGHTS
+from mintpilot.wording.speech import Speech
 
 
 class PeopleSummary(Part):
@@ -32,36 +33,45 @@ def people_of(record: MissionRecord) -> PeopleSummary:
 
 def people_lines(record: MissionRecord) -> list[str]:
     """Who was found, in sentences, with the pictures that show them; nothing where nobody was."""
-    people = people_of(record)
+    people, speech = people_of(record), Speech(record.language)
     lines = []
     if people.found:
-        shown = f": {', '.join(people.pictures)}" if people.pictures else ""
-        lines.append(f"{people.found} {'person' if people.found == 1 else 'people'} seen{shown}")
-    if people.reported:
-        rooms = "1 room" if people.reported == 1 else f"{people.reported} rooms"
-        lines.append(f"somebody is inside of {rooms}, by what was answered")
+        one = message("1 person seen")
+        seen = one if people.found == 1 else message("{count} people seen", count=people.found)
+        lines.append(": ".join(filter(None, (speech(seen), ", ".join(people.pictures)))))
+    if people.reported == 1:
+        lines.append(speech(message("somebody is inside of 1 room, by what was answered")))
+    elif people.reported:
+        rooms = message("somebody is inside of {count} rooms, by what was answered", count=people.reported)
+        lines.append(speech(rooms))
     return lines
 
 
 def look_line(look: LookRecord, lang: str = "en") -> str:
     """What a look into a room came to, as a clause."""
-    person = look.what == PERSON
-    if lang in SIGHTS:
-        what = PERSONS[lang][look.count > 1] if person else look.what
-        said = SIGHTS[lang][look.result].format(count=look.count, what=what, share=f"{look.seen or 0:.0%}").strip()
-        return f"{look.text}: {': '.join([said, *([', '.join(look.pictures)] if look.pictures else [])])}"
+    return ": ".join([look.text, Speech(lang)(_came_to(look)), *filter(None, [", ".join(look.pictures)])])
+
+
+def _came_to(look: LookRecord) -> Message:
+    person, what = look.what == PERSON, Named(look.what)
     match look.result:
         case Sight.UNSEEN:
-            found = f"it could not be seen (through {look.seen or 0:.0%} of the doorway)"
+            return message("it could not be seen (through {share:.0%} of the doorway)", share=look.seen or 0.0)
+        case Sight.EMPTY if person:
+            return message("nobody is there")
+        case Sight.EMPTY if look.what:
+            return message("no {what} was seen there", what=what)
         case Sight.EMPTY:
-            found = (
-                "nobody is there" if person else f"no {look.what} was seen there" if look.what else "nothing is there"
-            )
-        case Sight.FOUND:
-            what = ("person" if look.count == 1 else "people") if person else look.what or "thing"
-            shown = f": {', '.join(look.pictures)}" if look.pictures else ""
-            found = f"found {look.count} {what}{'s' if look.count > 1 and not person else ''}{shown}"
-    return f"{look.text}: {found}"
+            return message("nothing is there")
+        case Sight.FOUND if person and look.count == 1:
+            return message("found 1 person")
+        case Sight.FOUND if person:
+            return message("found {count} people", count=look.count)
+    return (
+        message("found {count}: {what}", count=look.count, what=what)
+        if look.what
+        else message("found {count}", count=look.count)
+    )
 
 
 def people_seen(record: MissionRecord) -> list[SeenRecord]:

@@ -10,11 +10,14 @@ from PIL import Image, ImageDraw
 from mintpilot.core.decisions import AskQuestion
 from mintpilot.core.events import Event, MapUpdated, MissionStarted, Stepped
 from mintpilot.core.inputs import DeliberationEnded
+from mintpilot.core.message import NOTHING, Message, message
 from mintpilot.core.mission import Mission
 from mintpilot.core.query import Question
 from mintpilot.core.semantic_map import SemanticMap
 from mintpilot.core.tree import GapExplanation
+from mintpilot.recording.build import speech_of
 from mintpilot.recording.frames import FRAMES, FrameStore
+from mintpilot.wording.speech import IN_ENGLISH, Speech
 
 MOST_PICTURES = 2
 """Pictures written for one question: those in which most of what it is about is seen."""
@@ -29,24 +32,30 @@ class QuestionNotes:
     _map: SemanticMap | None = None
     _mission: Mission | None = None
     _why: dict[str, GapExplanation] = field(default_factory=dict)
-    _worth: str = ""
+    _worth: Message = NOTHING
+    _speech: Speech = IN_ENGLISH
 
     def __call__(self, event: Event) -> None:
         """Takes in one event."""
         match event:
             case MissionStarted():
                 self._mission = event.mission
+                self._speech = speech_of(event)
             case MapUpdated():
                 self._map = event.map
             case Stepped(input=DeliberationEnded(decision=AskQuestion() as asked)):
                 self._why |= {one.gap_id: one for one in asked.reasoning.explanations}
                 scored = asked.scored
-                self._worth = f"It is worth {scored.gain_bits:.2f} bits and {scored.regret_saved_s:.0f} s of flight."
+                self._worth = message(
+                    "It is worth {gain_bits:.2f} bits and {saved_s:.0f} s of flight.",
+                    gain_bits=scored.gain_bits,
+                    saved_s=scored.regret_saved_s,
+                )
 
     def why(self, question: Question) -> tuple[str, ...]:
         """The figures behind a question, a sentence each; empty where it was not thought about (before take-off)."""
         found = [one.figures or one.why for gap in question.gaps if (one := self._why.get(gap.id)) is not None]
-        return (*found, self._worth) if found else ()
+        return tuple(self._speech(one) for one in (*found, self._worth)) if found else ()
 
     def draw(self, question: Question) -> tuple[Path, ...]:
         """Writes the map with the places that the question is about, and pictures of them where there are any.
@@ -64,7 +73,7 @@ class QuestionNotes:
         start_m = self._mission.start_m if self._mission is not None else self._map.frame.box.centre_m
         name = question.id or "question"
         chart = place / f"{name}-map.png"
-        save_topdown(TopDown(map=self._map, start_m=start_m, goals=spots), chart)
+        save_topdown(TopDown(map=self._map, start_m=start_m, goals=spots, speech=self._speech), chart)
         return (chart, *self._pictures(question, self._map, place, name))
 
     def _pictures(self, question: Question, map: SemanticMap, place: Path, title: str) -> list[Path]:

@@ -6,33 +6,33 @@ import base64
 from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 from pydantic import JsonValue
 
+from mintpilot.core.message import Message, message
 from mintpilot.core.mission import Outcome
 from mintpilot.core.query import Reply
 from mintpilot.recording.frames import FRAMES, FrameStore, crop_jpeg
 from mintpilot.recording.people import look_line, people_lines, people_seen
-from mintpilot.recording.record import GapRecord, MissionRecord, QuestionRecord, SeenRecord
-from mintpilot.recording.spoken import heading, outcome_words
+from mintpilot.recording.record import GapRecord, MissionRecord, QuestionRecord, RuleRecord, SeenRecord
 from mintpilot.recording.tree_drawing import percent
 from mintpilot.recording.tree_svg import tree_svg
+from mintpilot.recording.words import OUTCOME_WORDS, REPLY_WORDS, stage_words
+from mintpilot.wording.speech import Speech
 
+REPORT_FILE = "report.html"
 MAX_PICTURES = 18
 """Close-ups shown; what bears on a gap comes first."""
-_REPLY_WORDS = {Reply.YES: "Yes", Reply.NO: "No", Reply.UNSURE: "Don't know", Reply.TIMEOUT: "No answer"}
-"""Replies as a person would say them."""
 
 
-def reply_words(question: QuestionRecord) -> str:
+def reply_words(question: QuestionRecord, speech: Speech) -> str:
     """The reply in a word or two: ``Yes``, the label of an option."""
     if question.option is not None:
         return question.replies[question.option]
-    return _REPLY_WORDS[question.reply]
+    return speech(REPLY_WORDS[question.reply])
 
 
 def consequence(question: QuestionRecord) -> str:
@@ -43,12 +43,12 @@ def consequence(question: QuestionRecord) -> str:
 
 
 _KNOWN_WORDS = {
-    ("region", "open"): "not known whether it can be flown through",
-    ("region", "yes"): "known to be free",
-    ("region", "no"): "known to be blocked",
-    ("room", "open"): "not known whether somebody is inside",
-    ("room", "yes"): "somebody is inside",
-    ("room", "no"): "nobody is inside",
+    ("region", "open"): message("not known whether it can be flown through"),
+    ("region", "yes"): message("known to be free"),
+    ("region", "no"): message("known to be blocked"),
+    ("room", "open"): message("not known whether somebody is inside"),
+    ("room", "yes"): message("somebody is inside"),
+    ("room", "no"): message("nobody is inside"),
 }
 
 
@@ -76,18 +76,21 @@ def report_html(record: MissionRecord, folder: Path) -> str:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    environment.filters |= {"number": number, "percent": percent}
-    plot = folder / "topdown.svg"
+    plot, speech = folder / "topdown.svg", Speech(record.language)
+    environment.filters |= {"number": speech.number, "percent": lambda share: percent(share, speech)}
     return environment.get_template("report.html.j2").render(
         record=record,
         gaps=weightiest_first(record.gaps),
         tone="good" if record.outcome is Outcome.SUCCESS else "stopped" if record.outcome in _STOPPED else "bad",
-        headline=outcome_words(record.outcome, record.language),
-        heading=partial(heading, lang=record.language),
-        reply_words=reply_words,
+        headline=speech(OUTCOME_WORDS[record.outcome]),
+        stage_words=lambda stage: speech(stage_words(stage)),
+        t=lambda template, **values: speech(Message(template, tuple(values.items()))),
+        what_words=lambda seen: _what(seen, speech),
+        rule_words=lambda rule: speech(rule_message(rule)),
+        reply_words=lambda question: reply_words(question, speech),
         consequence=consequence,
         plot=_data_uri(plot.read_bytes(), "image/svg+xml") if plot.is_file() else "",
-        tree=Markup(tree_svg(record.tree)) if record.tree else "",  # made here of escaped text
+        tree=Markup(tree_svg(record.tree, speech=speech)) if record.tree else "",  # made here of escaped text
         pictures=pictures(record, folder),
         people=[*people_lines(record), *(look_line(look, record.language) for look in record.looks)],
         slowest_s=max(record.timings_s.values(), default=0.0),
@@ -111,7 +114,7 @@ def pictures(record: MissionRecord, folder: Path) -> list[Picture]:
     for seen in order:
         crop = crop_jpeg(store.file(seen.view[0]), seen.view[1:]) if seen.view and len(found) < MAX_PICTURES else None
         if crop is not None:
-            caption = _caption(seen)
+            caption = _caption(seen, Speech(record.language))
             uri = _data_uri(crop, "image/jpeg")
             found.append(Picture(data=uri, title=seen.id, caption=caption, gap=seen.id in subjects))
     return found
@@ -122,18 +125,25 @@ def weightiest_first(gaps: Iterable[GapRecord]) -> list[GapRecord]:
     return sorted(gaps, key=lambda gap: (not gap.asked, not gap.relevant))
 
 
-def number(value: float | None, unit: str = "", digits: int = 1) -> str:
-    """A figure with its unit, or a dash where there is none; a space that does not break keeps them together."""
-    if value is None:
-        return "–"
-    return f"{value:.{digits}f}\N{NO-BREAK SPACE}{unit}" if unit else f"{value:.{digits}f}"
+def rule_message(rule: RuleRecord) -> Message:
+    """Whether a rule was kept."""
+    if rule.kept is None:
+        return message("rule not judged: {rule}", rule=rule.text)
+    return message("rule kept: {rule}", rule=rule.text) if rule.kept else message("rule BROKEN: {rule}", rule=rule.text)
 
 
-def _caption(seen: SeenRecord) -> str:
+def _what(seen: SeenRecord, speech: Speech) -> str:
+    known = _KNOWN_WORDS.get((seen.kind, seen.state))
+    return speech.thing(seen.state) if known is None else speech(known)
+
+
+def _caption(seen: SeenRecord, speech: Speech) -> str:
     x, y, _ = seen.position_m
-    what = _KNOWN_WORDS.get((seen.kind, seen.state)) or f"seen in {seen.sightings} pictures"
-    view = seen.view[0] if seen.view else 0
-    return f"{seen.description}; {what}; at {x:.1f} m east, {y:.1f} m north (picture {view})"
+    sightings = message("seen in {count} pictures", count=seen.sightings)
+    at = message(
+        "at {x:.1f} m east, {y:.1f} m north (picture {number})", x=x, y=y, number=seen.view[0] if seen.view else 0
+    )
+    return "; ".join([seen.description, speech(_KNOWN_WORDS.get((seen.kind, seen.state)) or sightings), speech(at)])
 
 
 def _data_uri(data: bytes, media: str) -> str:

@@ -18,16 +18,19 @@ from matplotlib.ticker import MaxNLocator
 from matplotlib.transforms import ScaledTranslation
 
 from mintpilot.core.geometry import Bools, Floats, Vec3
+from mintpilot.core.message import message, verbatim
 from mintpilot.core.semantic_map import Cell, Knowledge, Region, SemanticMap
+from mintpilot.recording.build import speech_of
 from mintpilot.recording.history import History
 from mintpilot.recording.labels import Labels
 from mintpilot.recording.words import printable
+from mintpilot.wording.speech import IN_ENGLISH, Speech
 
 PLANNED, FLOWN, OTHER, INK = "#16202b", "#0072b2", "#8a8f96", "#16202b"
 KNOWLEDGE_LOOKS = {
-    Knowledge.OPEN: ("#e69f00", "///", "not known"),
-    Knowledge.YES: ("#009e73", "...", "known to be free"),
-    Knowledge.NO: ("#d55e00", "xxx", "known to be blocked"),
+    Knowledge.OPEN: ("#e69f00", "///", message("region: not known")),
+    Knowledge.YES: ("#009e73", "...", message("region: free")),
+    Knowledge.NO: ("#d55e00", "xxx", message("region: blocked")),
 }
 """Colour (distinguishable by colour-blind people), hatching and words for what is known of a region."""
 _PLAIN = {
@@ -40,6 +43,7 @@ _USUAL = {"fire": "#f2701d", "person": "#56b4e9", "injured": "#56b4e9"}
 """Colours of things without a colour word, by a word of their class."""
 _STRUCTURE = {"wall", "partition", "rack", "shelf", "pillar", "floor", "ceiling", "rubble"}
 """Classes that are part of the building: their voxels show them."""
+_ROOM_WORDS = {Knowledge.OPEN: verbatim("?"), Knowledge.YES: message("occupied"), Knowledge.NO: message("empty")}
 _MAX_LABELS = 24
 
 
@@ -57,6 +61,8 @@ class TopDown:
     """Ways (n, 3) that other answers would have led to."""
     goals: tuple[tuple[str, Vec3], ...] = ()
     """(label, place) of each stop, in order."""
+    speech: Speech = IN_ENGLISH
+    """The language of its labels."""
     radius_m: float = 0.3
     """Of the drone: how far above and below the paths an obstacle counts."""
 
@@ -80,6 +86,7 @@ def view_of(history: History) -> TopDown | None:
         flown_m=tuple(leg.log.position_m for leg in legs),
         alternatives_m=tuple(others[:6]),
         goals=tuple((leg.site.label or leg.stop.id, leg.site.position_m) for leg in stops),
+        speech=speech_of(history.started),
         radius_m=mission.limits.radius_m if mission else 0.3,
     )
 
@@ -117,14 +124,14 @@ def draw_topdown(view: TopDown) -> Figure:
     axes.set_ylim(box.lo_m[1], box.hi_m[1])
     labels = Labels(axes)
     keys: list[Patch | Line2D] = _occupancy(axes, view)
-    keys += _regions(axes, view.map, labels)
-    keys += _rooms(axes, view.map, labels)
+    keys += _regions(axes, view, labels)
+    keys += _rooms(axes, view, labels)
     keys += _paths(axes, view)
     _places(axes, view, labels)
     _objects(axes, view, labels)
     labels.draw()
-    axes.set_xlabel("east, m", color=INK)
-    axes.set_ylabel("north, m", color=INK)
+    axes.set_xlabel(view.speech.label("east, m"), color=INK)
+    axes.set_ylabel(view.speech.label("north, m"), color=INK)
     for axis in (axes.xaxis, axes.yaxis):
         axis.set_major_locator(MaxNLocator(nbins=10, steps=[1, 2, 5, 10], integer=True))
     axes.tick_params(colors="#566472", length=3)
@@ -170,8 +177,8 @@ def _occupancy(axes: Axes, view: TopDown) -> list[Patch | Line2D]:
         extent=_extent(view.map),
         interpolation="nearest",
     )
-    names = ("never seen", "free", "occupied at flight height")
-    return [Patch(facecolor=c, edgecolor="#c6ced6", label=n) for c, n in zip(colours, names, strict=True)]
+    names = (message("never seen"), message("free"), message("occupied at flight height"))
+    return [Patch(facecolor=c, edgecolor="#c6ced6", label=view.speech(n)) for c, n in zip(colours, names, strict=True)]
 
 
 def _footprint(seen: SemanticMap, region: Region) -> Bools:
@@ -181,7 +188,8 @@ def _footprint(seen: SemanticMap, region: Region) -> Bools:
     return mask.reshape(seen.frame.shape[1:])
 
 
-def _regions(axes: Axes, seen: SemanticMap, labels: Labels) -> list[Patch | Line2D]:
+def _regions(axes: Axes, view: TopDown, labels: Labels) -> list[Patch | Line2D]:
+    seen = view.map
     x0, _, y0, _ = _extent(seen)
     keys: dict[Knowledge, Patch] = {}
     for region in seen.regions:
@@ -197,13 +205,14 @@ def _regions(axes: Axes, seen: SemanticMap, labels: Labels) -> list[Patch | Line
         hatched.set_edgecolor(colour)
         hatched.set_linewidth(0)
         axes.contour(xs, ys, mask, levels=(0.5,), colors=[colour], linewidths=1.6)
-        keys[region.passable] = Patch(facecolor=colour + "4d", edgecolor=colour, hatch=hatch, label=f"region {words}")
+        keys[region.passable] = Patch(facecolor=colour + "4d", edgecolor=colour, hatch=hatch, label=view.speech(words))
         ys_in, xs_in = np.nonzero(mask)
         labels.add(float(xs[xs_in].mean()), float(ys[ys_in].mean()), printable(region.id), strong=True)
     return list(keys.values())
 
 
-def _rooms(axes: Axes, seen: SemanticMap, labels: Labels) -> list[Patch | Line2D]:
+def _rooms(axes: Axes, view: TopDown, labels: Labels) -> list[Patch | Line2D]:
+    seen = view.map
     for room in seen.rooms:
         low, size = room.door_m.lo_m, room.door_m.size_m
         axes.add_patch(
@@ -211,10 +220,12 @@ def _rooms(axes: Axes, seen: SemanticMap, labels: Labels) -> list[Patch | Line2D
                 (low[0], low[1]), size[0], size[1], facecolor="#cc79a7", edgecolor="#8c3f6a", linewidth=2, zorder=4
             )
         )
-        known = "searched" if room.searched else {"open": "?", "yes": "occupied", "no": "empty"}[room.occupied.value]
+        known = view.speech(message("searched") if room.searched else _ROOM_WORDS[room.occupied])
         x, y, _ = room.door_m.centre_m
         labels.add(x, y, f"{printable(room.id)} ({known})", strong=True)
-    return [Patch(facecolor="#cc79a7", edgecolor="#8c3f6a", label="closed door")] if seen.rooms else []
+    return (
+        [Patch(facecolor="#cc79a7", edgecolor="#8c3f6a", label=view.speech.label("closed door"))] if seen.rooms else []
+    )
 
 
 def _paths(axes: Axes, view: TopDown) -> list[Patch | Line2D]:
@@ -223,14 +234,14 @@ def _paths(axes: Axes, view: TopDown) -> list[Patch | Line2D]:
     planned: dict[str, Any] = {"color": PLANNED, "linewidth": 1.3, "linestyle": (0, (4, 3))}
     other: dict[str, Any] = {"color": OTHER, "linewidth": 1.1, "linestyle": (0, (1, 1.6))}
     groups = (
-        (view.alternatives_m, other, "way under other answers"),
-        (view.flown_m, flown, "flown"),
-        (view.planned_m, planned, "planned"),
+        (view.alternatives_m, other, message("way under other answers")),
+        (view.flown_m, flown, message("flown")),
+        (view.planned_m, planned, message("planned")),
     )
     for layer, (paths, look, name) in enumerate(groups):
         lines = [axes.plot(path[:, 0], path[:, 1], zorder=5 + layer, **look)[0] for path in paths if len(path)]
         for line in lines[:1]:
-            line.set_label(name)
+            line.set_label(view.speech(name))
             keys.append(line)
     return keys
 
@@ -239,7 +250,7 @@ def _places(axes: Axes, view: TopDown, labels: Labels) -> None:
     x, y, _ = view.start_m
     axes.plot(x, y, marker="o", markersize=11, color="white", markeredgecolor=INK, markeredgewidth=2, zorder=9)
     axes.plot(x, y, marker="o", markersize=4, color=INK, zorder=10)
-    labels.add(x, y, "start", strong=True)
+    labels.add(x, y, view.speech.label("start"), strong=True)
     for number, (label, place) in enumerate(view.goals, start=1):
         axes.plot(place[0], place[1], marker="*", markersize=17, color="#f0e442", markeredgecolor=INK, zorder=9)
         labels.add(place[0], place[1], f"{number}. {printable(label)}", strong=True)

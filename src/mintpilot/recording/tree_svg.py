@@ -7,9 +7,11 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from xml.sax.saxutils import escape
 
+from mintpilot.core.message import message
 from mintpilot.recording.record import TreeRecord
 from mintpilot.recording.tree_drawing import details, percent, prune
 from mintpilot.recording.words import printable
+from mintpilot.wording.speech import IN_ENGLISH, Speech
 
 _CARD, _GAP, _LINE, _PAD, _BETWEEN = 290.0, 62.0, 17.0, 11.0, 14.0
 """Widths of a card and of the space between columns, height of a line, padding, space between rows; pixels."""
@@ -53,14 +55,15 @@ class _Card:
         return 1.5 + self.depth * (_CARD + _GAP)
 
 
-def tree_svg(tree: TreeRecord, *, max_nodes: int = 60) -> str:
+def tree_svg(tree: TreeRecord, *, max_nodes: int = 60, speech: Speech = IN_ENGLISH) -> str:
     """The tree as SVG; colours come from CSS variables of the page around it, with own ones where there are none.
 
     Args:
         tree: the tree.
         max_nodes: nodes drawn; those left out are counted where they would be.
+        speech: the language of what is said around the tree's own words.
     """
-    root = _card(prune(tree, max_nodes), 0)
+    root = _card(prune(tree, max_nodes), 0, speech)
     bottom = _place(root, 1.5)
     cards = list(_walk(root))
     lift = 1.5 - min(card.middle - card.height / 2 for card in cards)
@@ -71,7 +74,7 @@ def tree_svg(tree: TreeRecord, *, max_nodes: int = 60) -> str:
     parts = [
         f'<svg xmlns="http://www.w3.org/2000/svg" class="mint" viewBox="0 0 {width:.0f} {height:.0f}" '
         f'width="{width:.0f}" height="{height:.0f}" role="img">',
-        "<title>What the best way to fly depends on</title>",
+        f"<title>{escape(speech.label('What the best way to fly depends on'))}</title>",
         f"<style>{_STYLE}</style>",
         *(_edge(card, child) for card in cards for child in card.children),
         *(_draw(card) for card in cards),
@@ -80,14 +83,16 @@ def tree_svg(tree: TreeRecord, *, max_nodes: int = 60) -> str:
     return "\n".join(parts)
 
 
-def _card(node: TreeRecord, depth: int) -> _Card:
+def _card(node: TreeRecord, depth: int, speech: Speech) -> _Card:
     lines = [("words", line) for line in _wrapped(node.words[:1].upper() + node.words[1:], _BOLD, 3)]
-    lines.append(("odds", f"{percent(node.probability)} likely" if depth else "Before any question"))
-    for fact in details(node):
-        style = "branch fact" if node.branch_on and fact.endswith(node.branch_words) else "fact"
-        style = "plan fact" if fact.startswith(("fly:", "flown:")) else style
+    odds = message("{share} likely", share=percent(node.probability, speech))
+    lines.append(("odds", speech(odds if depth else message("Before any question"))))
+    for kind, fact in details(node, speech):
+        style = f"{kind} fact" if kind else "fact"
         lines.extend((style, line) for line in _wrapped(fact, _PLAIN if style == "fact" else _BOLD, 2))
-    return _Card(node=node, lines=lines, depth=depth, children=[_card(child, depth + 1) for child in node.children])
+    return _Card(
+        node=node, lines=lines, depth=depth, children=[_card(child, depth + 1, speech) for child in node.children]
+    )
 
 
 def _place(card: _Card, top: float) -> float:

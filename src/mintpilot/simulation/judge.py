@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from mintpilot.core.geometry import Bools, Box, Floats, Vec3
+from mintpilot.core.message import Message, joined, message, verbatim
 from mintpilot.core.mission import Outcome, Verdict
 from mintpilot.core.plan import Stop
 from mintpilot.core.ports import Judge
@@ -61,11 +62,12 @@ class SceneJudge(Judge):
         for smoke in self._scene.smokes:
             if smoke.toxic:
                 inside = self._touches(smoke.extent_m, position_m)
-                self._note(found, inside, Outcome.TOXIC_SMOKE, f"its hull was in the toxic smoke '{smoke.id}'")
+                toxic = message("its hull was in the toxic smoke '{smoke}'", smoke=smoke.id)
+                self._note(found, inside, Outcome.TOXIC_SMOKE, toxic)
         outside = ~self._scene.volume.contains(position_m)
-        self._note(found, outside, Outcome.LEFT_VOLUME, "it left the volume in which it may fly")
+        self._note(found, outside, Outcome.LEFT_VOLUME, message("it left the volume in which it may fly"))
         spent = time_s - self._mission_start_s > self._rules.endurance_s
-        reason = f"its endurance of {self._rules.endurance_s:g} s was spent in the air"
+        reason = message("its endurance of {seconds:g} s was spent in the air", seconds=self._rules.endurance_s)
         self._note(found, spent, Outcome.ENDURANCE, reason)
         return min(found, key=lambda item: item[0]) if found else None
 
@@ -83,7 +85,7 @@ class SceneJudge(Judge):
 
     def touched(self, what: str) -> None:
         """The drone touched something: any contact is a collision."""
-        self.fail(collision(what))
+        self.fail(collision(verbatim(what)))
 
     def hovered(self, position_m: Vec3) -> None:
         """The drone came to rest here: people in the open within reach count as found."""
@@ -141,22 +143,29 @@ class SceneJudge(Judge):
             return self._failure
         missed = [name for name in self._wanted_people() if name not in self._found]
         if missed:
-            return Verdict(outcome=Outcome.PERSON_MISSED, reason=f"nobody found {_listed(missed)}, who needs help")
+            who = message("nobody found {who}, who needs help", who=_listed(missed))
+            return Verdict(outcome=Outcome.PERSON_MISSED, reason=who)
         if self._goals_left:
-            left = [name or "what the instruction means" for name in self._goals_left]
-            return Verdict(outcome=Outcome.NOT_REACHED, reason=f"it never got to {_listed(left)}")
-        return Verdict(outcome=Outcome.SUCCESS, reason="everything was reached, nothing was touched")
+            left = _listed(self._goals_left)
+            return Verdict(outcome=Outcome.NOT_REACHED, reason=message("it never got to {what}", what=left))
+        return Verdict(outcome=Outcome.SUCCESS, reason=message("everything was reached, nothing was touched"))
 
     def _picked(self, target: Solid | Landmark | None, position_m: Vec3) -> None:
         wanted = self._goals_left[0] if self._goals_left else None
         if target is None or wanted not in ("", target.id):
-            taken = f"'{target.id}'" if target is not None else "nothing that can be taken"
-            meant = f"'{wanted}' was meant" if wanted else "nothing more was to be taken"
-            self.fail(Verdict(outcome=Outcome.WRONG_TARGET, reason=f"it reached for {taken}, but {meant}"))
+            taken = _listed([target.id]) if target is not None else message("nothing that can be taken")
+            meant = message("'{what}' was meant", what=wanted) if wanted else message("nothing more was to be taken")
+            reason = message("it reached for {taken}, but {meant}", taken=taken, meant=meant)
+            self.fail(Verdict(outcome=Outcome.WRONG_TARGET, reason=reason))
             return
         gap = box_distance(target.extent_m, position_m)
         if gap > self._rules.pick_reach_m:
-            reason = f"it reached for '{target.id}' from {gap:.2f} m away, farther than {self._rules.pick_reach_m:g} m"
+            reason = message(
+                "it reached for '{what}' from {gap_m:.2f} m away, farther than {reach_m:g} m",
+                what=target.id,
+                gap_m=gap,
+                reach_m=self._rules.pick_reach_m,
+            )
             self.fail(Verdict(outcome=Outcome.WRONG_TARGET, reason=reason))
             return
         self._carried = self._goals_left.pop(0)
@@ -185,14 +194,14 @@ class SceneJudge(Judge):
         return touching
 
     @staticmethod
-    def _note(found: list[tuple[int, Verdict]], flags: np.ndarray, outcome: Outcome, reason: str) -> None:
+    def _note(found: list[tuple[int, Verdict]], flags: np.ndarray, outcome: Outcome, reason: Message) -> None:
         if flags.any():
             found.append((int(np.argmax(flags)), Verdict(outcome=outcome, reason=reason)))
 
 
-def collision(what: str) -> Verdict:
+def collision(what: Message) -> Verdict:
     """The verdict on touching something."""
-    return Verdict(outcome=Outcome.COLLISION, reason=f"it touched {what}")
+    return Verdict(outcome=Outcome.COLLISION, reason=message("it touched {what}", what=what))
 
 
 def box_distance(box: Box, point_m: Vec3) -> float:
@@ -209,5 +218,7 @@ def _distance_to_person(point_m: Vec3, person: Person) -> float:
     return float(np.linalg.norm(off - along * axis))
 
 
-def _listed(names: list[str]) -> str:
-    return ", ".join(f"'{name}'" for name in names)
+def _listed(names: list[str]) -> Message:
+    """Names in quotation marks; an empty one: what the instruction means."""
+    told = [message("'{name}'", name=name) if name else message("what the instruction means") for name in names]
+    return joined(told, ", ")

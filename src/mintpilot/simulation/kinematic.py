@@ -9,6 +9,7 @@ import numpy as np
 from mintpilot.core.errors import DeviceError
 from mintpilot.core.geometry import Floats, Vec3
 from mintpilot.core.inputs import MotionEnded
+from mintpilot.core.message import verbatim
 from mintpilot.core.mission import Verdict
 from mintpilot.core.motion import FollowTrajectory, Land, Motion, MotionEnd, PerformAction, TakeOff
 from mintpilot.core.ports import Judge, Vehicle
@@ -151,7 +152,7 @@ class KinematicSimulator(Vehicle, Judge):
         failure = self._judge.first_failure(times, way)
         touch = self._obstacles.first_touch(way, times)
         if touch is not None:
-            self._judge.fail(collision(f"'{touch[1]}'"))
+            self._judge.fail(collision(verbatim(f"'{touch[1]}'")))
         elif failure is not None:
             self._judge.fail(failure[1])
         self._time_s, self._position = float(times[1]), way[1]
@@ -188,7 +189,7 @@ class KinematicSimulator(Vehicle, Judge):
         failure = self._judge.first_failure(times, way.position_m)
         touch = self._obstacles.first_touch(way.position_m, way.time_s + self._judge.mission_s(begun_s))
         if touch is not None and (failure is None or touch[0] <= failure[0]):
-            return touch[0], collision(f"'{touch[1]}'")
+            return touch[0], collision(verbatim(f"'{touch[1]}'"))
         return failure
 
     def _until_touch(self, way: Reference) -> Reference:
@@ -200,7 +201,7 @@ class KinematicSimulator(Vehicle, Judge):
         self._flown = None
         if flown.failure is not None:
             self._judge.fail(flown.failure)
-            return self._ended(flown.motion, MotionEnd.FAILED, log=_log(flown), reason=flown.failure.reason)
+            return self._ended(flown.motion, MotionEnd.FAILED, log=_log(flown), reason=str(flown.failure.reason))
         self._velocity = np.zeros(3)
         if isinstance(flown.motion, PerformAction):
             if not flown.braked:
@@ -244,5 +245,5 @@ def _log(flown: _Flown) -> FlightLog | None:
         time_s=flown.begun_s + flown.way.time_s[: flown.last + 1],
         position_m=positions.copy(),
         reference_m=positions.copy(),
-        reason=flown.failure.reason if flown.failure is not None else "",
+        reason=str(flown.failure.reason) if flown.failure is not None else "",
     )

@@ -251,7 +251,7 @@ class MujocoSimulator(Vehicle, Camera, Judge):
     def _finished(self, flown: _Flown) -> MotionEnded:
         verdict, motion = self.verdict(), flown.motion
         if verdict is not None:
-            return self._ended(motion, MotionEnd.FAILED, log=flown.ended(FlightEnd.FAILED, verdict.reason))
+            return self._ended(motion, MotionEnd.FAILED, log=flown.ended(FlightEnd.FAILED, str(verdict.reason)))
         here = as_vec3(self._drone.position_m)
         if isinstance(motion, PerformAction) and not flown.braked:
             self._judge.acted(motion.stop, here)

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from mintpilot.core.message import message
 from mintpilot.core.ports import Ask, Decision, Fly, LookOption, Situation, Strategy
 from mintpilot.core.tolerances import TOLERANCE
 from mintpilot.core.tree import Certificate, Mint, StopReason
@@ -99,8 +100,13 @@ def _certificate(best: Worth, mint: Mint, asking_bits: float, asking_rate: float
         entropy_bits=class_entropy_bits(mint),
         best_gain_bits=asking_bits,
         bound_s=float("inf"),
-        text=(
-            f"A look at {look.gap} takes {best.option.seconds:.1f} s, saves {best.saved_s:.1f} s on average and tells "
-            f"{best.bits_per_s:.3f} bits a second; the best question tells {asking_rate:.3f}."
+        text=message(
+            "A look at {gap} takes {look_s:.1f} s, saves {saved_s:.1f} s on average and tells {rate:.3f} bits a "
+            "second; the best question tells {asking_rate:.3f}.",
+            gap=look.gap,
+            look_s=best.option.seconds,
+            saved_s=best.saved_s,
+            rate=best.bits_per_s,
+            asking_rate=asking_rate,
         ),
     )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from mintpilot.core.errors import LimitError
+from mintpilot.core.message import Message, message
 from mintpilot.core.ports import Decision, Fly, Situation, Strategy
 from mintpilot.core.tree import Certificate, StopReason
 from mintpilot.strategies.flying import cautious_plan, fly_cautiously, tree_of
@@ -23,10 +24,10 @@ class WithinLimits(Strategy):
         try:
             return self.strategy.decide(situation)
         except LimitError as error:
-            return _cautiously(situation, str(error))
+            return _cautiously(situation, error.said)
 
 
-def _cautiously(situation: Situation, notice: str) -> Fly:
+def _cautiously(situation: Situation, notice: Message) -> Fly:
     try:
         fly = fly_cautiously(situation, tree_of(situation), StopReason.LIMIT)
     except LimitError:  # the tree itself is too large
@@ -37,7 +38,9 @@ def _cautiously(situation: Situation, notice: str) -> Fly:
             entropy_bits=0.0,
             best_gain_bits=0.0,
             bound_s=float("inf"),
-            text="A bound on the work was reached before anything could be compared: the cautious plan is flown.",
+            text=message(
+                "A bound on the work was reached before anything could be compared: the cautious plan is flown."
+            ),
         )
         fly = Fly(plan=plan, certificate=certificate)
     return Fly(plan=fly.plan, certificate=fly.certificate, mint=fly.mint, notices=(notice,))

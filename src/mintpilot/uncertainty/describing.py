@@ -7,6 +7,7 @@ from collections import Counter
 from collections.abc import Sequence
 
 from mintpilot.core.geometry import Vec3
+from mintpilot.core.message import Message, Named, joined, message
 from mintpilot.uncertainty.things import Thing, name_of, synonyms, values_of
 
 _BEFORE = ("size", "colour", "pattern", "material", "shape")
@@ -57,13 +58,17 @@ def place(thing: Thing, others: Sequence[Thing]) -> str:
     return f" next to {describe(min(near)[2])}"
 
 
-def seen(things: Sequence[Thing]) -> str:
+def seen(things: Sequence[Thing]) -> Message:
     """What is on the map, in a few words: ``the red box, 2 racks``; for messages."""
     if not things:
-        return "nothing"
+        return message("nothing")
     counts = Counter(describe(t).removeprefix("the ") for t in things)
-    parts = [f"the {text}" if n == 1 else f"{n} times '{text}'" for text, n in sorted(counts.items())]
-    return ", ".join(parts[:8]) + (f" and {len(parts) - 8} more" if len(parts) > 8 else "")
+    parts = [
+        Named(f"the {text}") if n == 1 else message("{n} times '{what}'", n=n, what=Named(text))
+        for text, n in sorted(counts.items())
+    ]
+    said = joined(parts[:8], ", ")
+    return message("{what} and {count} more", what=said, count=len(parts) - 8) if len(parts) > 8 else said
 
 
 def _after(name: str, value: str) -> str:

@@ -9,11 +9,12 @@ from dataclasses import dataclass, replace
 from mintpilot.core.errors import InputError
 from mintpilot.core.gap import PRESENT, Belief, GapKind, KnowledgeGap
 from mintpilot.core.geometry import Vec3
+from mintpilot.core.message import Message, Named, joined, message
 from mintpilot.core.observation import PERSON
 from mintpilot.core.plan import PRICE_S, PlanningProblem, Stop, VehicleLimits
 from mintpilot.core.rule import Ruling
 from mintpilot.core.semantic_map import Knowledge, Region, SemanticMap
-from mintpilot.core.task import Task
+from mintpilot.core.task import Action, Task, what_is_done
 from mintpilot.uncertainty.describing import describe, place
 from mintpilot.uncertainty.doubts import is_doubtful_person
 from mintpilot.uncertainty.gaps import obstacle_gaps, people_gaps, presence_gaps
@@ -34,11 +35,11 @@ class Findings:
     """All that is open and bears on the task, sorted by id."""
     stops: tuple[Stop, ...]
     """Ordered stops in order, then the optional ones, sorted by id."""
-    problems: tuple[str, ...]
+    problems: tuple[Message, ...]
     """A plain sentence for each reference that matches nothing, with what was seen instead."""
     sought: str = ""
     """What is sought and on no map yet, in plain words; empty where all that is sought was seen."""
-    unseen: tuple[str, ...] = ()
+    unseen: tuple[Message, ...] = ()
     """Those of the problems that end once more was seen."""
     wishes: tuple[str, ...] = ()
     """Ids of open regions that are stayed out of only because the person wished so. Where nothing can be flown,
@@ -154,8 +155,12 @@ def frame_problem(
     """
     if not findings.stops and findings.problems and not finished:
         raise InputError(
-            f"nothing of '{task.instruction}' can be done: {' '.join(findings.problems)} "
-            "Name something that was seen, or look at more of the place first."
+            message(
+                "nothing of '{instruction}' can be done: {why} Name something that was seen, or look at more of the "
+                "place first.",
+                instruction=task.instruction,
+                why=joined(findings.problems),
+            )
         )
     called = _called(things_of(map))
     return PlanningProblem(
@@ -192,15 +197,16 @@ def _weighed(
         own_s = next((p for p in (subgoal.price_s, of_kind_s) if p is not None), prices.usual_s)
         number, named = int(stop.id.split(":")[1]), stop.id.split(":")[2:]
         step = task.step_for(number)
-        text = f"go to {called.get(named[0], named[0])}" if step.action == "seek" and named else step.text
+        text = what_is_done(Action.GO, called.get(named[0], named[0])) if step.action == "seek" and named else step.text
         return replace(stop, price_s=own_s, step=step.n, text=text)
     gap = next(gap for gap in findings.gaps if gap.id == stop.gap)
     value = stop.sites[0].value or PRESENT
     chance = belief.probability_of(gap.id, value) if belief else gap.prior[gap.values.index(value)]
     price_s = prices.usual_s if prices.people_s is None else prices.people_s
-    seek, verb = task.step_for(0).n, "look closer at" if gap.is_thing else "look into"
+    seek = task.step_for(0).n
     about = next((one.description for one in gap.candidates if one.id == value), gap.description)
-    return replace(stop, price_s=price_s, chance=chance, step=seek, text=f"{verb} {about}")
+    text = message("look closer at {place}", place=Named(about)) if gap.is_thing else what_is_done(Action.LOOK, about)
+    return replace(stop, price_s=price_s, chance=chance, step=seek, text=text)
 
 
 def told_apart(gaps: Sequence[KnowledgeGap], corner_m: Vec3) -> list[KnowledgeGap]:
@@ -233,13 +239,22 @@ def _whereabouts(position_m: Vec3, corner_m: Vec3, digits: int) -> str:
     return f"{' and '.join(parts)} of the map's south-west corner" if parts else "at the map's south-west corner"
 
 
-def _heights(task: Task, map: SemanticMap) -> list[str]:
+def _heights(task: Task, map: SemanticMap) -> list[Message]:
     """A sentence for each height that a flat map does not have."""
     lo_m, hi_m = map.frame.box.lo_m[2], map.frame.box.hi_m[2]
-    layer = f"one layer, at {map.frame.box.centre_m[2]:g} m" if map.frame.is_flat else f"from {lo_m:g} to {hi_m:g} m"
+    layer = (
+        message("one layer, at {height_m:g} m", height_m=map.frame.box.centre_m[2])
+        if map.frame.is_flat
+        else message("heights from {lo_m:g} to {hi_m:g} m", lo_m=lo_m, hi_m=hi_m)
+    )
     spare_m = max(0.25, map.frame.resolution_m) if map.frame.is_flat else 0.0
     return [
-        f"'{goal.reference.phrase}' at a height of {goal.height_m:g} m cannot be flown: the map has {layer}."
+        message(
+            "'{what}' at a height of {height_m:g} m cannot be flown: the map has {layer}.",
+            what=goal.reference.phrase,
+            height_m=goal.height_m,
+            layer=layer,
+        )
         for goal in task.subgoals
         if goal.height_m is not None and not lo_m - spare_m <= goal.height_m <= hi_m + spare_m
     ]

@@ -8,17 +8,19 @@ flown so, its gap is opened: the operator is asked, and only an explicit yes fre
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
 
+from mintpilot.core.errors import InputError
 from mintpilot.core.geometry import Bools, Box, Ints, Vec3
-from mintpilot.core.observation import RegionKind
+from mintpilot.core.observation import PERSON, RegionKind
 from mintpilot.core.semantic_map import Knowledge, Region, SemanticMap
 from mintpilot.core.task import Action, KeepAway, Task
+from mintpilot.uncertainty.describing import seen
 from mintpilot.uncertainty.matching import Standpoint, match
-from mintpilot.uncertainty.things import Thing, things_of
+from mintpilot.uncertainty.things import Thing, stands_for, things_of
 
 PREFIX = "keep-away-"
 """Ids of these regions begin so."""
@@ -59,6 +61,34 @@ def with_keep_away(map: SemanticMap, task: Task, *, start_m: Vec3, previous: Sem
             )
         )
     return replace(bare, regions=(*bare.regions, *added))
+
+
+class NothingToKeepAwayFromError(InputError):
+    """A distance is wanted from something that is not on a given map."""
+
+    def __init__(self, wish: KeepAway, things: Sequence[Thing]) -> None:
+        self.phrase = wish.reference.phrase
+        """What it was called."""
+        super().__init__(
+            f"Nothing on the map matches '{self.phrase}', from which {wish.distance_m:g} m are to be kept. "
+            f"On it: {seen(things)}."
+        )
+
+
+def check_keep_away(map: SemanticMap, task: Task, *, start_m: Vec3) -> None:
+    """Whether everything that is to be kept away from is on a given map.
+
+    People and kinds of regions are not looked for: they come and go, and the wish means whatever turns up.
+
+    Raises:
+        NothingToKeepAwayFromError: something is not.
+    """
+    things, view = things_of(map), Standpoint(start_m=start_m, towards_m=map.frame.box.centre_m)
+    regions = {region.id for region in map.regions}
+    for wish in task.keep_away:
+        known = wish.reference.object_id in regions or wish.reference.label in list(RegionKind)
+        if not known and not stands_for(PERSON, wish.reference.label) and not list(_meant(wish, things, view)):
+            raise NothingToKeepAwayFromError(wish, things)
 
 
 def _cells(wish: KeepAway, map: SemanticMap, task: Task, view: Standpoint) -> Ints:

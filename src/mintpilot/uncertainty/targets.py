@@ -8,6 +8,7 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field
 
 from mintpilot.core.gap import NOWHERE, Candidate, GapKind, KnowledgeGap, target_id
+from mintpilot.core.message import Message, message
 from mintpilot.core.observation import PERSON
 from mintpilot.core.plan import Site, Stop
 from mintpilot.core.task import Action, Reference, SubGoal, Task
@@ -36,8 +37,8 @@ class Binding:
     """Ids of things that are asked about by themselves: where all people are sought, those who may be none."""
     stops: list[Stop] = field(default_factory=list)
     gaps: dict[str, KnowledgeGap] = field(default_factory=dict)
-    problems: list[str] = field(default_factory=list)
-    unmatched: dict[str, str] = field(default_factory=dict)
+    problems: list[Message] = field(default_factory=list)
+    unmatched: dict[str, Message] = field(default_factory=dict)
     """Phrases that match nothing which was seen, with the problem that says so."""
 
     def one(self, stop_id: str, subgoal: SubGoal, reference: Reference, first: int) -> None:
@@ -84,7 +85,13 @@ class Binding:
         label = reference.label
         alike = [t for t in self.things if synonyms(t.label) & synonyms(label)] if label else []
         wanted = reference.object_id or reference.phrase
-        self.problems.append(f"Nothing on the map matches '{wanted}'. Seen was {seen(alike or self.things)}.")
+        self.problems.append(
+            message(
+                "Nothing on the map matches '{wanted}'. Seen was {seen}.",
+                wanted=wanted,
+                seen=seen(alike or self.things),
+            )
+        )
         if not reference.object_id:
             self.unmatched[reference.phrase] = self.problems[-1]
         return ()

@@ -1,7 +1,7 @@
 """Words and sentences of three more languages: German, French, Spanish. Tables only.
 
-A noun is given with its gender (m, f, n), an adjective by its forms; sentences take a subject in the nominative, so
-that no other case is needed but the one after *near*.
+A noun is given with its gender (m, f, n; p: plural, feminine where it matters), an adjective by its forms; sentences
+take a subject in the nominative, so that no other case is needed but the one after words for a place.
 """
 
 from __future__ import annotations
@@ -21,8 +21,8 @@ class Tongue:
     """What the mission itself calls things: English words → the same."""
     articles: Mapping[str, str]
     """Gender → definite article, nominative."""
-    near: Mapping[str, str]
-    """Gender → *near the*."""
+    places: Mapping[str, Mapping[str, str]]
+    """*near*, *in*, *behind*, *from*, *on* → gender → the same with the definite article."""
     nouns: Mapping[str, str]
     """English noun → gender and noun: ``m Rauch``."""
     adjectives: Mapping[str, str]
@@ -41,6 +41,8 @@ class Tongue:
     """Frame of a choice, or, none of these."""
     outcomes: Mapping[str, str]
     """English consequence → the same; ``{}`` stands for what is called by name."""
+    quotes: str
+    """Quotation marks; ``{}`` stands between them."""
     probably: str
     longer: str
 
@@ -49,17 +51,33 @@ VALUE, ATTRIBUTE = "value", "attribute"
 
 GERMAN = Tongue(
     name="de",
-    articles={"m": "der", "f": "die", "n": "das"},
-    near={"m": "beim", "f": "bei der", "n": "beim"},
+    articles={"m": "der", "f": "die", "n": "das", "p": "die"},
+    places={
+        "near": {"m": "beim", "f": "bei der", "n": "beim", "p": "bei den"},
+        "in": {"m": "im", "f": "in der", "n": "im", "p": "in den"},
+        "behind": {"m": "hinter dem", "f": "hinter der", "n": "hinter dem", "p": "hinter den"},
+        "from": {"m": "aus dem", "f": "aus der", "n": "aus dem", "p": "aus den"},
+        "on": {"m": "auf dem", "f": "auf der", "n": "auf dem", "p": "auf den"},
+    },
     nouns={
         "smoke": "m Rauch", "cloud": "f Wolke", "gate": "n Tor", "door": "f Tür", "room": "m Raum", "rack": "n Regal",
         "box": "f Kiste", "crate": "f Kiste", "person": "f Person", "fire": "n Feuer", "wall": "f Wand",
-        "barrel": "n Fass", "pillar": "m Pfeiler", "area": "m Bereich",
+        "barrel": "n Fass", "pillar": "m Pfeiler", "area": "m Bereich", "region": "m Bereich", "start": "m Start",
+        "rubble": "m Schutt", "shelf": "n Regal", "object": "n Ding", "space": "m Raum", "people": "p Personen",
+        "man": "m Mann", "woman": "f Frau", "child": "n Kind", "worker": "m Arbeiter", "firefighter": "f Einsatzkraft",
+        "bottle": "f Flasche", "medicine": "n Medikament", "water": "n Wasser", "bag": "f Tasche", "key": "m Schlüssel",
+        "phone": "n Telefon", "table": "m Tisch", "chair": "m Stuhl", "kitchen": "f Küche", "office": "n Büro",
+        "bathroom": "n Bad", "bedroom": "n Schlafzimmer", "corridor": "m Flur", "garage": "f Garage",
+        "warehouse": "n Lager", "hall": "f Halle", "house": "n Haus", "building": "n Gebäude", "window": "n Fenster",
+        "roof": "n Dach", "tree": "m Baum", "car": "n Auto", "truck": "m Lastwagen", "tent": "n Zelt", "tank": "m Tank",
+        "valve": "n Ventil", "exit": "m Ausgang", "corner": "f Ecke",
     },
     adjectives={
         "red": "rot", "blue": "blau", "green": "grün", "yellow": "gelb", "white": "weiß", "black": "schwarz",
         "grey": "grau", "brown": "braun", "orange": "orangefarben", "small": "klein", "large": "groß",
         "medium": "mittelgroß", "closed": "geschlossen", "dark": "dunkl", "injured": "verletzt", "nearest": "nächst",
+        "second": "zweit", "third": "dritt", "fourth": "viert", "fifth": "fünft", "burning": "brennend",
+        "unseen": "ungesehen", "open": "offen",
         "cubic": "würfelförmig", "cylindrical": "zylindrisch", "spherical": "kugelförmig",
     },
     before=frozenset({"*"}),
@@ -86,24 +104,42 @@ GERMAN = Tongue(
         "take it that you mean that": "ich verstehe, dass das gemeint ist",
         "take it that you mean another": "ich verstehe, dass etwas anderes gemeint ist",
     },
+    quotes="„{}“",
     probably="wahrscheinlich: {}",
     longer="{}, {} s länger",
 )  # fmt: skip
 
 FRENCH = Tongue(
     name="fr",
-    articles={"m": "le", "f": "la"},
-    near={"m": "près du", "f": "près de la"},
+    articles={"m": "le", "f": "la", "p": "les"},
+    places={
+        "near": {"m": "près du", "f": "près de la", "p": "près des"},
+        "in": {"m": "dans le", "f": "dans la", "p": "dans les"},
+        "behind": {"m": "derrière le", "f": "derrière la", "p": "derrière les"},
+        "from": {"m": "du", "f": "de la", "p": "des"},
+        "on": {"m": "sur le", "f": "sur la", "p": "sur les"},
+    },
     nouns={
         "smoke": "f fumée", "cloud": "m nuage", "gate": "m portail", "door": "f porte", "room": "f pièce",
         "rack": "m rayonnage", "box": "f boîte", "crate": "f caisse", "person": "f personne", "fire": "m feu",
-        "wall": "m mur", "barrel": "m baril", "pillar": "m pilier", "area": "f zone",
+        "wall": "m mur", "barrel": "m baril", "pillar": "m pilier", "area": "f zone", "region": "f zone",
+        "start": "m départ", "rubble": "p décombres", "shelf": "m rayonnage", "object": "m objet", "space": "m espace",
+        "people": "p personnes", "man": "m homme", "woman": "f femme", "child": "m enfant", "worker": "m travailleur",
+        "firefighter": "m pompier", "bottle": "f bouteille", "medicine": "m médicament", "water": "f eau",
+        "bag": "m sac", "key": "f clé", "phone": "m téléphone", "table": "f table", "chair": "f chaise",
+        "kitchen": "f cuisine", "office": "m bureau", "bathroom": "f salle de bain", "bedroom": "f chambre",
+        "corridor": "m couloir", "garage": "m garage", "warehouse": "m dépôt", "hall": "m hall", "house": "f maison",
+        "building": "m bâtiment", "window": "f fenêtre", "roof": "m toit", "tree": "m arbre", "car": "f voiture",
+        "truck": "m camion", "tent": "f tente", "tank": "m réservoir", "valve": "f vanne", "exit": "f sortie",
+        "corner": "m coin",
     },
     adjectives={
         "red": "rouge rouge", "blue": "bleu bleue", "green": "vert verte", "yellow": "jaune jaune",
         "white": "blanc blanche", "black": "noir noire", "grey": "gris grise", "brown": "brun brune",
         "orange": "orange orange", "small": "petit petite", "large": "grand grande", "medium": "moyen moyenne",
         "closed": "fermé fermée", "dark": "sombre sombre", "injured": "blessé blessée",
+        "nearest": "le_plus_proche la_plus_proche", "burning": "en_feu en_feu",
+        "unseen": "non_vu non_vue", "open": "ouvert ouverte",
         "cubic": "cubique cubique", "cylindrical": "cylindrique cylindrique", "spherical": "sphérique sphérique",
     },
     before=frozenset({"small", "large"}),
@@ -132,24 +168,42 @@ FRENCH = Tongue(
         "take it that you mean that": "je comprends que c'est cela",
         "take it that you mean another": "je comprends que c'est un autre",
     },
+    quotes="« {} »",
     probably="probablement : {}",
     longer="{}, {} s de plus",
 )  # fmt: skip
 
 SPANISH = Tongue(
     name="es",
-    articles={"m": "el", "f": "la"},
-    near={"m": "cerca del", "f": "cerca de la"},
+    articles={"m": "el", "f": "la", "p": "las"},
+    places={
+        "near": {"m": "cerca del", "f": "cerca de la", "p": "cerca de las"},
+        "in": {"m": "en el", "f": "en la", "p": "en las"},
+        "behind": {"m": "detrás del", "f": "detrás de la", "p": "detrás de las"},
+        "from": {"m": "del", "f": "de la", "p": "de las"},
+        "on": {"m": "sobre el", "f": "sobre la", "p": "sobre las"},
+    },
     nouns={
         "smoke": "m humo", "cloud": "f nube", "gate": "m portón", "door": "f puerta", "room": "f sala",
         "rack": "m estante", "box": "f caja", "crate": "f caja", "person": "f persona", "fire": "m fuego",
-        "wall": "f pared", "barrel": "m barril", "pillar": "m pilar", "area": "f zona",
+        "wall": "f pared", "barrel": "m barril", "pillar": "m pilar", "area": "f zona", "region": "f zona",
+        "start": "m inicio", "rubble": "m escombro", "shelf": "m estante", "object": "m objeto", "space": "m espacio",
+        "people": "p personas", "man": "m hombre", "woman": "f mujer", "child": "m niño", "worker": "m trabajador",
+        "firefighter": "m bombero", "bottle": "f botella", "medicine": "m medicamento", "water": "f agua",
+        "bag": "f bolsa", "key": "f llave", "phone": "m teléfono", "table": "f mesa", "chair": "f silla",
+        "kitchen": "f cocina", "office": "f oficina", "bathroom": "m baño", "bedroom": "m dormitorio",
+        "corridor": "m pasillo",
+        "garage": "m garaje", "warehouse": "m almacén", "hall": "f nave", "house": "f casa", "building": "m edificio",
+        "window": "f ventana", "roof": "m tejado", "tree": "m árbol", "car": "m coche", "truck": "m camión",
+        "tent": "f tienda", "tank": "m depósito", "valve": "f válvula", "exit": "f salida", "corner": "f esquina",
     },
     adjectives={
         "red": "rojo roja", "blue": "azul azul", "green": "verde verde", "yellow": "amarillo amarilla",
         "white": "blanco blanca", "black": "negro negra", "grey": "gris gris", "brown": "marrón marrón",
         "orange": "naranja naranja", "small": "pequeño pequeña", "large": "grande grande",
         "medium": "mediano mediana", "closed": "cerrado cerrada", "dark": "oscuro oscura", "injured": "herido herida",
+        "nearest": "más_cercano más_cercana", "burning": "en_llamas en_llamas", "unseen": "no_visto no_vista",
+        "open": "abierto abierta",
         "cubic": "cúbico cúbica", "cylindrical": "cilíndrico cilíndrica", "spherical": "esférico esférica",
     },
     before=frozenset(),
@@ -174,6 +228,7 @@ SPANISH = Tongue(
         "take it that you mean that": "entiendo que es eso",
         "take it that you mean another": "entiendo que es otra cosa",
     },
+    quotes="«{}»",
     probably="probablemente: {}",
     longer="{}, {} s más",
 )  # fmt: skip

@@ -20,7 +20,10 @@ from mintpilot.wording.tongue_places import PLACES, split_places
 from mintpilot.wording.tongues import ATTRIBUTE, TONGUES, VALUE, Tongue
 
 ENGLISH = "en"
-_NEAR = re.compile(r" (?:near|next to|beside|by|close to|with) (?=the )")
+_PLACE = re.compile(r" (near|next to|beside|by|close to|with|at|in|inside|behind|from|on) (?=the )")
+_PLACES = {"inside": "in", "in": "in", "behind": "behind", "from": "from", "on": "on"}
+"""English words for a place → the key of `Tongue.places`; all others are *near*."""
+_VOWEL = re.compile(r"[aeiouhéèêâô]", re.IGNORECASE)
 
 
 def translated(template: Wording, language: str, names: Mapping[str, str] | None = None) -> Wording:
@@ -91,13 +94,17 @@ class TranslatedWording:
 
 
 def noun_phrase(english: str, tongue: Tongue) -> str:
-    """``the grey smoke near the gate`` in that language; in quotation marks and English where a word is not known."""
+    """``the grey smoke near the gate`` in that language; where a word is not known, in English and quotation marks."""
     named, places = split_places(english)
-    parts = _NEAR.split(named)
+    first, *rest = _PLACE.split(named)
     known = tongue.names.get(named)
-    said = [known] if known else [_nominal(part, tongue, is_place=i > 0) for i, part in enumerate(parts)]
+    said = [known] if known else [_nominal(first, tongue)]
+    if not known:
+        said += [
+            _nominal(part, tongue, _PLACES.get(word, "near")) for word, part in zip(rest[::2], rest[1::2], strict=True)
+        ]
     said += [PLACES[tongue.name].get(place, "") for place in places]
-    return " ".join(said) if all(said) else f"“{english}”"
+    return " ".join(said) if all(said) else tongue.quotes.format(english)
 
 
 def consequence(english: str, tongue: Tongue) -> str:
@@ -175,24 +182,35 @@ def _subject(literal: Literal, gap: KnowledgeGap, tongue: Tongue) -> str:
     return noun_phrase(named, tongue) if named and len(alike) == 1 else ""
 
 
-def _nominal(english: str, tongue: Tongue, *, is_place: bool) -> str:
-    """Article, adjectives and noun; empty where a word is not known."""
+def _nominal(english: str, tongue: Tongue, place: str = "") -> str:
+    """Article, adjectives and noun; empty where a word is not known. Without an article, the bare noun."""
     words = english.lower().split()
-    if len(words) < 2 or words[0] != "the" or words[-1] not in tongue.nouns:
+    if not words or words[-1] not in tongue.nouns:
         return ""
-    *adjectives, noun = words[1:]
-    if any(a not in tongue.adjectives for a in adjectives):
+    gender, name = tongue.nouns[words[-1]].split(" ", 1)
+    if len(words) == 1:
+        return name
+    *adjectives, _ = words[1:]
+    if words[0] != "the" or any(a not in tongue.adjectives for a in adjectives):
         return ""
-    gender, name = tongue.nouns[noun].split(" ", 1)
-    article = (tongue.near if is_place else tongue.articles)[gender]
-    forms = {a: _form(a, tongue, gender, is_place=is_place) for a in adjectives}
+    article = (tongue.places[place] if place else tongue.articles)[gender]
+    forms = {a: _form(a, tongue, gender, is_place=bool(place)) for a in adjectives}
     before = [forms[a] for a in adjectives if a in tongue.before or tongue.ends_by_case]
     after = [forms[a] for a in adjectives if forms[a] not in before]
-    return " ".join([article, *before, name, *after])
+    return _elided(" ".join([article, *before, name, *after]), tongue)
+
+
+def _elided(phrase: str, tongue: Tongue) -> str:
+    """French articles before a vowel: ``l'homme``, ``près de l'objet``."""
+    if tongue.name != "fr":
+        return phrase
+    phrase = re.sub(rf"\bdu (?={_VOWEL.pattern})", "de l'", phrase, flags=re.IGNORECASE)
+    return re.sub(rf"\b(?:le|la) (?={_VOWEL.pattern})", "l'", phrase, flags=re.IGNORECASE)
 
 
 def _form(adjective: str, tongue: Tongue, gender: str, *, is_place: bool) -> str:
     stem, *feminine = tongue.adjectives[adjective].split()
     if tongue.ends_by_case:
-        return stem + ("en" if is_place else "e")
-    return feminine[0] if gender == "f" else stem
+        return stem + ("en" if is_place or gender == "p" else "e")
+    word = (feminine[0] if gender in "fp" else stem).replace("_", " ")
+    return f"{word}s" if gender == "p" and not word.endswith("s") else word

@@ -28,7 +28,7 @@ class Place:
     def verdict(self) -> str:
         """What it flew into or out of; empty: nothing."""
         verdict = self._simulator.verdict()
-        return verdict.reason if verdict is not None else ""
+        return str(verdict.reason) if verdict is not None else ""
 
     def position_m(self, body: Body) -> Vec3:
         """Where it is in the scene; its centre stands above the ground on its legs."""
