@@ -142,7 +142,7 @@ def test_records_that_cannot_be_replayed_say_why(run: Path, tmp_path: Path) -> N
         ("missing", b"".join([*lines[:20], *lines[21:]])),
         ("foreign", b'{"hello": "world"}\n'),
         ("empty", b""),
-        ("newer", b"".join(lines).replace(b'"schema_version":4', b'"schema_version":9', 1)),
+        ("newer", b"".join(lines).replace(b'"schema_version":5', b'"schema_version":9', 1)),
     ):
         with pytest.raises(RecordError):
             verify_run(written(name, data))

@@ -259,7 +259,7 @@ def test_no_plan_counts_on_a_look_from_where_the_door_is_hidden(tmp_path, hidden
 
 
 def test_a_look_that_shows_nothing_is_planned_anew(tmp_path, monkeypatch):
-    """The door is in sight from the very viewpoint alone, and it looks from beside it: the plan counted on it."""
+    """The door is in sight from the very viewpoint alone, and the drone looks from beside it."""
     view_m = (7.9, 4.1)
     monkeypatch.setattr(ruling, "sees_into", lambda map, room, at_m: bool(np.allclose(at_m[:2], view_m)))
     (tmp_path / "hall.map").write_text("type octile\nheight 16\nwidth 24\nmap\n" + ("." * 24 + "\n") * 16)

@@ -12,7 +12,7 @@ from mintpilot.core.semantic_map import SemanticMap
 from mintpilot.planning.flyable import known_flyable
 from mintpilot.planning.lattice import lattice_of
 from mintpilot.planning.rule_labels import RuleGrid
-from mintpilot.planning.rule_search import ways_from
+from mintpilot.planning.rule_search import RuledGround, RuledWays
 from mintpilot.planning.terrain import start_cell
 
 
@@ -51,10 +51,13 @@ def ruled_path(
     if begun < 0:
         return None
     sets, table = grid.table(begun, ruling.held)
-    certain, easier = np.zeros(lattice.size), grid.easier(sets)
-    ways = ways_from(lattice, lattice.allowed, lattice.node(start), sets, table, grid.over(lattice), certain, easier)
+    kept = np.array([grid.is_kept(int(number)) for number in sets])
+    ground = RuledGround(lattice=lattice, allowed=lattice.allowed, sets=sets, table=table, kinds=grid.over(lattice),
+                         uncertain=np.zeros(lattice.size), easier=grid.easier(sets), kept=kept)  # fmt: skip
+    ways = RuledWays(ground=ground, node=lattice.node(start), rest=np.zeros(lattice.size))
+    ways.grow()
     node = lattice.node(goal)
-    ends = [(cost, state) for state, cost in ways.at(node) if grid.is_kept(int(sets[state]))]
+    ends = [(cost, state) for state, cost in ways.at(node) if kept[state]]
     if not ends:
         return None
     cells = lattice.cells(ways.path(node, min(ends)[1]))
