@@ -42,8 +42,8 @@ NOTES = (
     "95 %): *drop the stone on the dog* was a delivery, *stay near the wall and go to the gate* went to both (both "
     "are refused since); *how many people are in the hall* leaves out the hall, *look for survivors* looks for "
     "everybody who needs help (both kept, and counted as wrong).",
-    "Lists a and b are by somebody who had read the rules before, not by strangers. The goal, none silently wrong within "
-    "1 % at 95 % on 300 that nobody mended after, is not shown by them.",
+    "Lists a and b are by somebody who had read the rules before, not by strangers. The goal, none silently wrong "
+    "within 1 % at 95 % on 300 that nobody mended after, is not shown by them.",
     "Most refusals are one unknown word beside a known one (*the leaking valve*), which is a rule, and phrases.",
 )
 

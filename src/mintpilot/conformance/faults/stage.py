@@ -14,7 +14,7 @@ from mintpilot.conformance.faults.drawing import Draw
 from mintpilot.conformance.faults.faulty_operator import FaultyOperator
 from mintpilot.conformance.faults.faulty_source import FaultySource
 from mintpilot.conformance.faults.faulty_vehicle import FaultyVehicle
-from mintpilot.conformance.faults.kinds import Adapter, FaultKind
+from mintpilot.conformance.faults.kinds import FaultKind
 from mintpilot.conformance.faults.ledger import Ledger
 from mintpilot.core.ports import Operator, Recorder
 from mintpilot.mission.components import MissionComponents
@@ -39,33 +39,6 @@ class Stage:
 
 
 Open: TypeAlias = Callable[[Draw, World, Ledger, Talk], AbstractContextManager[Stage]]
-
-
-def stage_for(adapter: Adapter) -> Open:
-    """Sets the stage of that adapter.
-
-    Raises:
-        MissingPartError: something that it needs is not installed.
-    """
-    match adapter:
-        case Adapter.MUJOCO:
-            from mintpilot.conformance.faults.physics import on_physics
-
-            return on_physics
-        case Adapter.DOUBLES:
-            from mintpilot.conformance.faults.doubles import on_doubles
-
-            return on_doubles
-        case Adapter.CONSOLE:
-            from mintpilot.conformance.faults.browser import on_console
-
-            return on_console
-        case Adapter.VOICE:
-            from mintpilot.conformance.faults.sound import on_voice
-
-            return on_voice
-        case _:
-            return on_kinematics
 
 
 @contextmanager

@@ -15,6 +15,7 @@ from mintpilot.assembly.components import components_for
 from mintpilot.assembly.talk import Talk
 from mintpilot.assembly.worlds import World, build_world
 from mintpilot.conformance.faults import surroundings
+from mintpilot.conformance.faults.adapters import stage_for
 from mintpilot.conformance.faults.drawing import Draw
 from mintpilot.conformance.faults.faulty_operator import hostile_words
 from mintpilot.conformance.faults.kinds import FaultKind
@@ -22,7 +23,6 @@ from mintpilot.conformance.faults.ledger import Counter, Ledger
 from mintpilot.conformance.faults.monitors import Breach, ended_in_time, judged, safe_after
 from mintpilot.conformance.faults.records import BreachRecord, FaultRecord
 from mintpilot.conformance.faults.records_kept import kept, replays
-from mintpilot.conformance.faults.stage import stage_for
 from mintpilot.conformance.sample import sample_world
 from mintpilot.core.mission import Verdict
 from mintpilot.mission.components import MissionComponents
