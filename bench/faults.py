@@ -59,13 +59,13 @@ def told(record: FaultRecord) -> None:
     print(f"{record.adapter.value} {record.number}: {record.outcome} {breaches}", flush=True)
 
 
-def section(records: list[FaultRecord], wanted: int, trials: int, jobs: int) -> Section:
+def section(records: list[FaultRecord], wanted: int, trials: int, jobs: int, given: list[str]) -> Section:
     """The section of docs/results.md."""
     breached = [record for record in records if record.breaches]
     notes = [f"{r.adapter.value} {r.number}: {r.breaches[0].rule}: {r.breaches[0].what}" for r in breached[:20]]
     if len(records) < wanted:
         notes.append(f"{len(records)} of the {wanted} missions of the whole campaign are flown; the command goes on.")
-    notes += [*NOTES, f"Load at the end: {os.getloadavg()[0]:.0f} on {os.cpu_count()} cores."]
+    notes += [*given, *NOTES, f"Load at the end: {os.getloadavg()[0]:.0f} on {os.cpu_count()} cores."]
     return Section(
         name="58-faults",
         title="Faults",
@@ -94,6 +94,7 @@ def main() -> int:
     arguments.add_argument("--jobs", type=int, default=2)
     arguments.add_argument("--out", type=Path, default=ROOT / "runs" / "faults")
     arguments.add_argument("--adapter", action="append", choices=list(Adapter), help="fly only these now")
+    arguments.add_argument("--note", action="append", default=[], help="a sentence to be kept with the section")
     arguments.add_argument("--flown", action="store_true")
     given = arguments.parse_args()
     store, keys = FaultStore(given.out), planned(counts(given.trials))
@@ -102,7 +103,7 @@ def main() -> int:
         run_campaign(store, [key for key in keys if key[0] in wanted], jobs=given.jobs, heard=told)
     store.close()
     records = [store.records[key] for key in keys if key in store.records]
-    keep(section(records, len(keys), given.trials, given.jobs))
+    keep(section(records, len(keys), given.trials, given.jobs, given.note))
     return 1 if any(record.breaches for record in records) else 0
 
 

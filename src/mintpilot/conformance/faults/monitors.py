@@ -279,9 +279,10 @@ def _says(query: Query, said: Said, gap: str) -> bool:
 def became_safe(ledger: Ledger, verdict: Verdict | None) -> Iterator[Breach]:
     """After each fault that the mission was told of the safe state is there in time."""
     for at_s, kind, what in ledger.known:
-        rule, took_s = rule_of(kind), safe_after(ledger, at_s) - starved_s(ledger, at_s)
+        rule, took_s = rule_of(kind), safe_after(ledger, at_s)
         if kind in (FaultKind.PILOT, FaultKind.LINK_LOST, FaultKind.MOTOR_LOST):
-            took_s = min(ledger.over_s, float(ledger.trace[-1][0])) - at_s - starved_s(ledger, at_s)
+            took_s = min(ledger.over_s, float(ledger.trace[-1][0])) - at_s
+        took_s -= starved_s(ledger, at_s, at_s + took_s)
         if took_s > rule.within_s and verdict is not None:
             yield Breach(
                 rule="not safe in time",
@@ -295,15 +296,15 @@ def ended_in_time(ledger: Ledger, faults: Iterable[Fault]) -> Iterator[Breach]:
     if any(kind is FaultKind.ORDERS for _, kind, _ in ledger.known):
         return
     for fault in faults:
-        took_s = end_s - fault.at_s - starved_s(ledger, fault.at_s)
+        took_s = end_s - fault.at_s - starved_s(ledger, fault.at_s, end_s)
         if rule_of(fault.kind) is ENDS and took_s > ENDS.within_s:
             yield Breach(rule="not safe in time", what=f"{fault.kind.value}: over after {took_s:.0f} s")
 
 
-def starved_s(ledger: Ledger, at_s: float) -> float:
-    """In real time: how long the machine did not let the mission run after ``at_s``, seconds."""
+def starved_s(ledger: Ledger, at_s: float, until_s: float) -> float:
+    """In real time: how long the machine did not let the mission run between these times, seconds."""
     times = ledger.array()[:, 0]
-    gaps_s = np.diff(times[(times >= at_s - STARVED_S) & (times <= ledger.over_s)])
+    gaps_s = np.diff(times[(times >= at_s - STARVED_S) & (times <= until_s)])
     return float(gaps_s[gaps_s > STARVED_S].sum())
 
 
