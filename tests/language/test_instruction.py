@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from mintpilot.core.errors import InputError
 from mintpilot.core.observation import RegionKind
-from mintpilot.core.task import Action, Avoidance, Task, step_lines
+from mintpilot.core.task import Action, Task, step_lines
 from mintpilot.language import Capabilities, InstructionError, parse_instruction, parse_phrase
 
 HOME_M = (0.0, 0.0, 1.0)
@@ -138,9 +138,9 @@ def test_what_is_unclear_or_impossible_is_refused(text: str) -> None:
 
 
 def test_a_wish_may_be_given_up_and_an_order_not() -> None:
-    wish = Avoidance(kind=RegionKind.SMOKE, strict=False)
-    assert read("Skip the smoke if you can and go to the hut").avoid == (wish,)
-    assert read("Never enter the smoke. Go to the hut").avoid == (Avoidance(kind=RegionKind.SMOKE),)
+    wished, ordered = read("Skip the smoke if you can and go to the hut"), read("Never enter the smoke. Go to the hut")
+    assert (wished.avoid, wished.rules) == ((RegionKind.SMOKE,), ())
+    assert (ordered.avoid, [rule.formula for rule in ordered.rules]) == ((), ["G !touches(smoke)"])
 
 
 def test_slowly_is_of_the_whole_flight() -> None:

@@ -18,12 +18,17 @@ from mintpilot.core.observation import RegionKind
 from mintpilot.core.plan import Site, Stop, VehicleLimits
 from mintpilot.core.query import Order
 from mintpilot.core.rule import Rule
-from mintpilot.core.semantic_map import Cell, Region, Room, SemanticMap
+from mintpilot.core.semantic_map import Cell, Knowledge, Region, Room, SemanticMap
 from mintpilot.core.task import Action, Task
 from mintpilot.mission.loop import fly_mission
 from mintpilot.mission.rule_progress import RuleProgress, done, flown
+from mintpilot.mission.rule_progress import ruling as rules_now
 from mintpilot.mission_file.reader import read_mission
+from mintpilot.planning.flyable import known_flyable
+from mintpilot.planning.ruled_path import ruled_path
+from mintpilot.planning.terrain import start_cell
 from mintpilot.rules import monitor
+from mintpilot.uncertainty import ruling
 
 ZONE_M = ((4.0, 0.0), (6.0, 5.0))
 RADIUS_M = 0.2
@@ -251,3 +256,39 @@ def test_no_plan_counts_on_a_look_from_where_the_door_is_hidden(tmp_path, hidden
     assert (near in came_to) is not hidden
     assert (verdict.outcome is Outcome.NO_SAFE_PLAN) is hidden  # the rule demands the look
     assert {one.resource for one in verdict.left} == ({"rule"} if hidden else set())
+
+
+def test_a_look_that_shows_nothing_is_planned_anew(tmp_path, monkeypatch):
+    """The door is in sight from the very viewpoint alone, and the drone looks from beside it."""
+    view_m = (7.9, 4.1)
+    monkeypatch.setattr(ruling, "sees_into", lambda map, room, at_m: bool(np.allclose(at_m[:2], view_m)))
+    (tmp_path / "hall.map").write_text("type octile\nheight 16\nwidth 24\nmap\n" + ("." * 24 + "\n") * 16)
+    room = (
+        "  rooms: [{id: room-1, description: the closed room, door: {lo_m: [9.9, 3.5, 0], hi_m: [10.1, 4.5, 2]}, "
+        f"viewpoint_m: [{view_m[0]}, {view_m[1]}], truth: absent}}]\n"
+    )
+    text = FILE.format(rule="{never: at(near), before: looked(room-1)}", returns="none")
+    (tmp_path / "m.yaml").write_text(text.replace("goals:", room + "seeks_people: true\ngoals:"))
+    world, heard = build_world(read_mission(tmp_path / "m.yaml"), base=tmp_path, seed=0), Listener()
+    with components_for(world, Choices(vehicle="kinematic"), operators=(), recorder=heard) as made:
+        fly_mission(made)
+    came_to = [leg.stop_id for leg in heard.flown if leg.phase == "mission"]
+    assert "look:room-1" in came_to
+    assert "go:2" not in came_to
+
+
+def test_the_way_home_ends_where_the_plan_begins(tmp_path):
+    """The middle of the start's cell is nearer to a wall than the body may be: both use the cell beside it."""
+    frame = GridFrame(origin_m=(0, 0, 0), resolution_m=0.5, shape=(1, 12, 12))
+    cells = np.full(frame.shape, Cell.FREE, np.uint8)
+    cells[0, :, 3] = Cell.OCCUPIED
+    zone = Region(id="zone", kind=RegionKind.AREA, cells=np.array([5 * 12 + 8]), passable=Knowledge.YES)
+    map_ = SemanticMap(frame=frame, cells=cells, regions=(zone,))
+    limits = VehicleLimits(radius_m=0.3, margin_m=0.0)
+    home, here = (2.35, 1.25, 0.25), (4.75, 4.75, 0.25)
+    task = Task(instruction="", subgoals=(), rules=(Rule(text="", formula="G !in(zone)"),))
+    way = ruled_path(map_, limits, rules_now(task, RuleProgress(), map_), start_m=here, goal_m=home)
+    assert way is not None
+    begins = frame.centres_of(start_cell(map_, limits, known_flyable(map_, limits), home)[None])[0]
+    assert not known_flyable(map_, limits)[tuple(frame.cells_of(np.array([home]))[0])]
+    assert tuple(way[-1]) == tuple(begins)

@@ -12,7 +12,7 @@ from mintpilot.assembly.worlds import build_world
 from mintpilot.core.errors import InfeasibleError
 from mintpilot.core.observation import RegionKind
 from mintpilot.core.ports import Ask, Fly
-from mintpilot.core.task import Avoidance
+from mintpilot.core.rule import Rule
 from mintpilot.mission.rehearsal import begin
 
 from .scenes import hall
@@ -21,8 +21,9 @@ from .scenes import hall
 def deliberated(*, strict: bool, detour: bool):
     world = build_world(hall(detour=detour), base=Path(), seed=0)
     parts = deliberation_parts(world, Choices())
-    avoid = (Avoidance(kind=RegionKind.SMOKE, strict=strict),)
-    return begin(replace(parts, task=replace(parts.task, avoid=avoid)), world.map).deliberated()
+    rule = Rule(text="never enter the smoke", formula="G !touches(smoke)")
+    kept = {"rules": (rule,)} if strict else {"avoid": (RegionKind.SMOKE,)}
+    return begin(replace(parts, task=replace(parts.task, **kept)), world.map).deliberated()
 
 
 def test_without_another_way_a_wish_is_given_up_and_asked_about() -> None:

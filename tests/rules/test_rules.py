@@ -8,9 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.oracles import ltlf
 
+from mintpilot.core import rule_patterns as patterns
 from mintpilot.core.errors import MissionError, UnknownNameError
 from mintpilot.core.rule import About, Proposition, Rule
-from mintpilot.rules import patterns
 from mintpilot.rules.compiling import compile_rules
 from mintpilot.rules.parsing import parse, proposition
 from mintpilot.rules.satisfying import can_be_kept, conflicting, is_trivial
@@ -18,7 +18,7 @@ from mintpilot.rules.satisfying import can_be_kept, conflicting, is_trivial
 A, B = proposition("at(a)"), proposition("at(b)")
 PATTERNS = {
     "never": (patterns.never(A), ("G", ("!", "a"))),
-    "always": (patterns.always_(A), ("G", "a")),
+    "always": (patterns.always(A), ("G", "a")),
     "never before": (patterns.never_before(A, B), ("|", ("U", ("!", "a"), "b"), ("G", ("!", "a")))),
     "first then": (patterns.first_then(A, B), ("&", ("U", ("!", "b"), "a"), ("F", "b"))),
     "after eventually": (patterns.after_eventually(A, B), ("G", ("->", "a", ("F", "b")))),
@@ -41,7 +41,7 @@ def test_every_pattern_means_its_formula(name):
 
 
 def test_always_in_a_region_means_with_the_whole_body():
-    assert patterns.always_(proposition("in(hall)")).formula == "G inside(hall)"
+    assert patterns.always(proposition("in(hall)")).formula == "G inside(hall)"
     assert patterns.never(proposition("in(hall)")).formula == "G !in(hall)"
 
 

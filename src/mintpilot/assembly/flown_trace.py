@@ -76,7 +76,11 @@ class FlownTrace:
             case "at" | "did":
                 return goal is not None and goal.id == subject, False
             case "looked":
-                return action in ("look", "count", "report") and self._sees_into(subject, stop_id, at_m), False
+                rooms = [subject]
+                if goal is not None and goal.id == subject:  # by its step: whichever room that was
+                    rooms = [room.id for room in self.map.rooms]
+                looks = action in ("look", "count", "report")
+                return looks and any(self._sees_into(room, stop_id, at_m) for room in rooms), False
             case _:
                 taken = (goal.thing or goal.reference) if goal is not None else None
                 words = {taken.label, taken.object_id, *taken.phrase.split()} if taken is not None else set()

@@ -9,6 +9,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
 
+from mintpilot.assembly.spoken_rules import with_rules
 from mintpilot.core.errors import InputError, MissionError
 from mintpilot.core.gap import CorrelationGroup
 from mintpilot.core.geometry import Vec3
@@ -151,7 +152,7 @@ def _by_rules(text: str, /, *, home_m: Vec3 | None, known: Collection[str] = ())
 def _assembled(file: MissionFile, mission: Mission, scene: Scene, rules: FlightRules, seed: int, parse: Parse) -> World:
     from mintpilot.simulation.scene_map import map_of_scene
 
-    task = _with_wishes(task_of(file) or parse(mission.instruction, home_m=mission.start_m), file)
+    task = _with_wishes(task_of(file) or parse(mission.instruction, home_m=mission.start_m), file, {})
     scene = _with_people_sought(scene, task)
     seen = map_of_scene(scene, mission.resolution_m)
     return World(
@@ -171,7 +172,8 @@ def _from_map(file: MissionFile, world: MapWorld, base: Path, seed: int, parse: 
     """The world of a map of one's own."""
     bare = load_bare_map(world, base)
     start = place_of(world.start_m, world.height_m)
-    task = _task_on_map(file, parse, start, world.height_m)
+    regions = {region.id: in_english(region.description) for region in world.regions}
+    task = _task_on_map(file, parse, start, world.height_m, regions)
     limits = mission_of(file, start_m=start, volume=bare.frame.box).limits
     map_ = map_of(
         world,
@@ -186,13 +188,16 @@ def _from_map(file: MissionFile, world: MapWorld, base: Path, seed: int, parse: 
 
 def _from_seen(file: MissionFile, map_: SemanticMap, start: Vec3, seed: int, parse: Parse) -> World:
     """The world of what was seen in pictures."""
-    return _on_map(file, map_, _task_on_map(file, parse, start, None), start, seed)
+    regions = {region.id: region.description for region in map_.regions}
+    return _on_map(file, map_, _task_on_map(file, parse, start, None, regions), start, seed)
 
 
-def _task_on_map(file: MissionFile, parse: Parse, start: Vec3, layer_m: float | None) -> Task:
+def _task_on_map(
+    file: MissionFile, parse: Parse, start: Vec3, layer_m: float | None, regions: Mapping[str, str]
+) -> Task:
     said = task_of(file) if layer_m is None else task_of(file, layer_m=layer_m)
     read = said or parse(file.instruction, home_m=start, known=listed_words(file.world))
-    return _with_wishes(read, file)
+    return _with_wishes(read, file, regions)
 
 
 def _on_map(file: MissionFile, map_: SemanticMap, task: Task, start: Vec3, seed: int) -> World:
@@ -283,17 +288,15 @@ def listed_words(world: MapWorld | ScenarioWorld | SceneWorld | SeenWorld) -> fr
     return frozenset(word for text in said for word in text.lower().replace("_", " ").split())
 
 
-def _with_wishes(task: Task, file: MissionFile) -> Task:
-    """The task with the distances that the file wants kept, besides those of the instruction."""
+def _with_wishes(task: Task, file: MissionFile, regions: Mapping[str, str]) -> Task:
+    """The task with the rules of the file and the distances that it wants kept, besides those of the instruction."""
     if file.seeks_people is not None and file.seeks_people is not task.seeks_people:
         task = replace(task, seeks_people=file.seeks_people)
-    if file.rules:
-        task = replace(task, rules=rules_of(file))
+    task = with_rules(task, regions, rules_of(file))
     if not file.keep_away:
         return task
     from mintpilot.language.phrases import parse_phrase
 
-    regions = {r.id for r in file.world.regions} if isinstance(file.world, MapWorld) else set()
     wishes = tuple(
         KeepAway(
             reference=Reference(phrase=spec.thing, object_id=spec.thing)

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import StrEnum
 
 from mintpilot.core.geometry import Bools, Ints, frozen
+
+_KEPT_OUT = re.compile(r"G !touches\(([^()]*)\)")
 
 
 class About(StrEnum):
@@ -58,6 +61,12 @@ class Rule:
     """In plain words, without a full stop."""
     formula: str
     """In LTLf."""
+
+    @property
+    def keeps_out_of(self) -> str:
+        """What the body never touches by this rule: a region's id or kind; empty where it says anything else."""
+        match = _KEPT_OUT.fullmatch(self.formula)
+        return match.group(1) if match else ""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -9,7 +9,7 @@ from enum import StrEnum
 
 from mintpilot.core.errors import MissionError
 from mintpilot.core.geometry import Vec3
-from mintpilot.core.message import Message, Named, joined, message
+from mintpilot.core.message import Filling, Message, Named, joined, message
 from mintpilot.core.observation import Attribute, RegionKind
 from mintpilot.core.rule import Rule
 
@@ -85,15 +85,6 @@ class SubGoal:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Avoidance:
-    """A kind of region that the person wants the drone to stay out of, whatever its passability."""
-
-    kind: RegionKind
-    strict: bool = True
-    """False for a wish (``skip the smoke if you can``): given up where the task cannot be done otherwise."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
 class KeepAway:
     """A distance to be kept from things or regions. A wish: a plan that cannot keep it says so."""
 
@@ -132,8 +123,9 @@ class Task:
     subgoals: tuple[SubGoal, ...]
     seeks_people: bool = False
     """True when everybody who is hurt must be found: closed rooms then open presence gaps."""
-    avoid: tuple[Avoidance, ...] = ()
-    """What is to be stayed out of. Regions of these kinds open no gap, so that no plan enters them."""
+    avoid: tuple[RegionKind, ...] = ()
+    """Kinds of region that the person wishes to be stayed out of (``skip the smoke if you can``): they open no gap, so
+    that no plan enters them, unless the task cannot be done otherwise. What is never to be entered is a rule."""
     keep_away: tuple[KeepAway, ...] = ()
     """What a distance is to be kept from."""
     slowly: bool = False
@@ -164,7 +156,12 @@ class Task:
     @property
     def keep_out(self) -> tuple[str, ...]:
         """What the drone stays out of or away from, in plain words: ``smoke``, ``people (2 m)``."""
-        kinds = [f"{a.kind}" if a.strict else f"{a.kind}, if possible" for a in self.avoid]
+        return (*(r.keeps_out_of for r in self.rules if r.keeps_out_of), *self.wishes)
+
+    @property
+    def wishes(self) -> tuple[str, ...]:
+        """What of that is given up where the task cannot be done otherwise."""
+        kinds = (f"{kind}, if possible" for kind in self.avoid)
         return (*kinds, *(f"{_bare(k.reference.phrase)} ({k.distance_m:g} m)" for k in self.keep_away))
 
 
@@ -174,15 +171,23 @@ def step_lines(task: Task) -> Iterator[Message]:
         yield message("{n} {step}", n=step.n, step=step.text)
     if task.slowly:
         yield message("the whole flight slowly")
-    if task.keep_out:
-        kinds = [Named(a.kind) if a.strict else message("{kind}, if possible", kind=Named(a.kind)) for a in task.avoid]
+    if task.wishes:
+        kinds = [message("{kind}, if possible", kind=Named(kind)) for kind in task.avoid]
         near = [
             message("{kind} ({distance_m:g} m)", kind=Named(_bare(k.reference.phrase)), distance_m=k.distance_m)
             for k in task.keep_away
         ]
         yield message("keep out of: {kinds}", kinds=joined([*kinds, *near], ", "))
     for rule in task.rules:
-        yield message("rule: {rule}", rule=rule.text)
+        yield message("rule: {rule}", rule=_rule_said(rule))
+
+
+def _rule_said(rule: Rule) -> Filling:
+    """A rule of the instruction about one place is said in any language; others in the words that they have."""
+    start, _, place = rule.text.partition("never enter ")
+    if rule.keeps_out_of and not start:
+        return message("never enter {place}", place=Named(place))
+    return rule.text
 
 
 def _step(n: int, goal: SubGoal) -> Step:

@@ -7,8 +7,9 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 
 from mintpilot.core.geometry import Vec3
-from mintpilot.core.observation import Attribute
-from mintpilot.core.task import START, Action, Avoidance, KeepAway, Reference, SubGoal
+from mintpilot.core.observation import Attribute, RegionKind
+from mintpilot.core.rule import Rule
+from mintpilot.core.task import START, Action, KeepAway, Reference, SubGoal
 from mintpilot.language import lexicon
 from mintpilot.language.phrases import Unread, Words, noun_phrase, refuse
 
@@ -28,7 +29,12 @@ class Reading:
     seeks_people: bool = False
     sought_at: int | None = None
     """Number of steps that stood before the last search for people."""
-    avoid: list[Avoidance] = field(default_factory=list)
+    avoid: list[RegionKind] = field(default_factory=list)
+    rules: list[Rule] = field(default_factory=list)
+    entered_later: tuple[Reference, ...] = ()
+    """What is not to be entered before a step that is said beside it."""
+    back_last: bool = False
+    """Whether it comes back at the end, wherever that is said."""
     keep_away: list[KeepAway] = field(default_factory=list)
     slowly: bool = False
     carried: Reference | None = None
@@ -143,6 +149,9 @@ _STATE = (
     "seeks_people",
     "sought_at",
     "avoid",
+    "rules",
+    "entered_later",
+    "back_last",
     "keep_away",
     "slowly",
     "carried",

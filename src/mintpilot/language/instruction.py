@@ -7,7 +7,7 @@ part in the reading. One that has none refuses the whole instruction and is name
 from __future__ import annotations
 
 from collections.abc import Collection
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import product
 
 from mintpilot.core.geometry import Vec3
@@ -15,7 +15,8 @@ from mintpilot.core.task import Action, SubGoal, Task
 from mintpilot.language import lexicon, verbs
 from mintpilot.language.clauses import HURT_PEOPLE, Reading, is_person
 from mintpilot.language.phrases import InstructionError, Words, refuse, words_of
-from mintpilot.language.rules import keeps_out, read_clause
+from mintpilot.language.rule_phrases import come_back, ordered
+from mintpilot.language.rules import enters_later, keeps_out, not_entered_before, read_clause
 
 _LONGEST = 600
 _MARKS = (".", ";", "!", "?", ":")
@@ -87,11 +88,18 @@ def _read_sentence(reading: Reading) -> None:
             raise _refusal(reading, at)
         if words.take("after"):
             _put_first(reading, begun)
+        elif words.take("before you", "before"):
+            _before(reading, begun)
         _skip_joints(words)
 
 
 def _read_one(reading: Reading) -> bool:
     words = reading.words
+    if not_entered_before(reading):
+        _plain(words)
+        earlier = _step_for(reading)
+        ordered(reading, earlier, earlier + 1)
+        return True
     if keeps_out(reading):
         if words.take("while"):
             _plain(words)
@@ -107,7 +115,7 @@ def _at_joint(reading: Reading) -> bool:
     words = reading.words
     while words.take(*verbs.AFTERTHOUGHTS):
         pass
-    if words.next() in ("", *_MARKS, ",", "and", "then", "after", "finally", "afterwards"):
+    if words.next() in ("", *_MARKS, ",", "and", "then", "after", "before", "finally", "afterwards"):
         return True
     at = words.at
     words.take("but", "while")
@@ -119,23 +127,50 @@ def _at_joint(reading: Reading) -> bool:
 
 
 def _keeps_out_ahead(reading: Reading) -> None:
-    at, avoid, keep = reading.words.at, list(reading.avoid), list(reading.keep_away)
+    at, before = reading.words.at, (reading.avoid[:], reading.keep_away[:], reading.rules[:])
     if not keeps_out(reading):
         reading.words.fail()
-    reading.words.at, reading.avoid, reading.keep_away = at, avoid, keep
+    reading.words.at = at
+    reading.avoid, reading.keep_away, reading.rules = before
 
 
 def _swapped(reading: Reading, begun: int) -> None:
     """``before you go to the van, go to the gate``."""
     _plain(reading.words)
     later = Reading(words=reading.words, home_m=reading.home_m, named=reading.named)
-    if not read_clause(later) or not reading.words.take(",") or not read_clause(reading):
+    is_read = enters_later(reading) or read_clause(later)
+    if not is_read or not reading.words.take(",") or not read_clause(reading):
         raise _refusal(reading, begun)
     if not _at_joint(reading) or later.carried is not None:
         raise _refusal(reading, begun)
+    count = len(reading.subgoals)
     reading.subgoals += later.subgoals
     reading.seeks_people |= later.seeks_people
+    ordered(reading, count - 1, count)
     _skip_joints(reading.words)
+
+
+def _before(reading: Reading, begun: int) -> None:
+    """``look into the room before you go through the smoke``; a step that follows is done after."""
+    _plain(reading.words)
+    count = len(reading.subgoals)
+    if not enters_later(reading) and not read_clause(reading):
+        raise _refusal(reading, begun)
+    if not _at_joint(reading):
+        raise _refusal(reading, begun)
+    ordered(reading, count - 1, count)
+
+
+def _step_for(reading: Reading) -> int:
+    """Place of the step that the next clause says: one that was said already, or a new one."""
+    said = Reading(words=reading.words, home_m=reading.home_m, named=reading.named)
+    if not read_clause(said) or len(said.subgoals) != 1:
+        raise _refusal(reading, reading.clause_at)
+    (goal,) = said.subgoals
+    known = [i for i, g in enumerate(reading.subgoals) if replace(g, id="") == goal]
+    if not known:
+        reading.subgoals.append(goal)
+    return known[0] if known else len(reading.subgoals) - 1
 
 
 def _put_first(reading: Reading, begun: int) -> None:
@@ -148,6 +183,7 @@ def _put_first(reading: Reading, begun: int) -> None:
     reading.carried = earlier.carried
     if not _at_joint(reading) or reading.words.next() == "after":
         raise _refusal(reading, begun)
+    ordered(reading, len(earlier.subgoals) - 1, len(earlier.subgoals))
 
 
 def _plain(words: Words) -> None:
@@ -173,6 +209,7 @@ def _task(text: str, reading: Reading, capabilities: Capabilities) -> Task:
         refuse(later, "would be done before or after the search for people, whichever is shorter: say the search last")
     if reading.seeks_people and not any(is_person(g.reference) for g in reading.subgoals):
         reading.add(Action.GO, HURT_PEOPLE)
+    come_back(reading)
     if not reading.subgoals and reading.took_off:
         reading.add(Action.GO, reading.home())
     if not reading.subgoals:
@@ -191,6 +228,7 @@ def _task(text: str, reading: Reading, capabilities: Capabilities) -> Task:
         seeks_people=reading.seeks_people,
         avoid=tuple(dict.fromkeys(reading.avoid)),
         keep_away=tuple(dict.fromkeys(reading.keep_away)),
+        rules=tuple(dict.fromkeys(reading.rules)),
         slowly=reading.slowly,
     )
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 
-from mintpilot.language import steps
+from mintpilot.language import rule_phrases, steps
 from mintpilot.language.clauses import Reading
 from mintpilot.language.grammar import Found, matched
 from mintpilot.language.slots import SLOTS
@@ -13,6 +13,8 @@ from mintpilot.language.slots import SLOTS
 _Rule = tuple[str, Callable[[Reading, Found], None]]
 _DOES: tuple[_Rule, ...] = (
     ("LAUNCH [<height>]", steps.take_off),
+    ("(return [HOME] | GO HOME) AT_END", rule_phrases.back_at_the_end),
+    ("AT_END [,] (return [HOME] | GO HOME)", rule_phrases.back_at_the_end),
     ("[SLOWLY] (rtl [to home] | return HOME | GO [straight | directly] HOME) [SLOWLY]", steps.home),
     ("(photograph | PICTURE of) <things> {HOW}", steps.photograph),
     ("PICTURE [there]", steps.photograph),
@@ -58,7 +60,11 @@ _KEEPS_OUT: tuple[_Rule, ...] = (
     ),
     ("[WISH [,]] STAY (<distance> | a distance | your distance) from <outs> [[,] WISH]", steps.keep_out),
     ("<named> OFF_LIMITS", steps.keep_out),
+    ("(ALWAYS STAY WITHIN | STAY [ALWAYS] (within | inside) | NEVER leave) <outs> [ALWAYS]", rule_phrases.stay_within),
+    ("STAY in <outs> ALWAYS", rule_phrases.stay_within),
 )
+_ENTERED_LATER: tuple[_Rule, ...] = (("(ENTER | ENTERING) <outs>", rule_phrases.enter_later),)
+_NOT_BEFORE: tuple[_Rule, ...] = (("NEVER ENTER <outs> BEFORE", rule_phrases.enter_later),)
 
 
 def read_clause(reading: Reading) -> bool:
@@ -69,6 +75,16 @@ def read_clause(reading: Reading) -> bool:
 def keeps_out(reading: Reading) -> bool:
     """Takes one clause that says what is to be stayed out of; False where there is none."""
     return _first(reading, _KEEPS_OUT)
+
+
+def enters_later(reading: Reading) -> bool:
+    """Takes what follows a ``before`` where it is no step but something that is entered; False where it is a step."""
+    return _first(reading, _ENTERED_LATER)
+
+
+def not_entered_before(reading: Reading) -> bool:
+    """Takes ``never enter the smoke before``, which a step follows; False where there is none."""
+    return _first(reading, _NOT_BEFORE)
 
 
 def _first(reading: Reading, rules: tuple[_Rule, ...]) -> bool:

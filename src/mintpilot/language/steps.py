@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from mintpilot.core.observation import Attribute
-from mintpilot.core.task import KEEP_AWAY_M, Action, Avoidance, KeepAway, Reference
+from mintpilot.core.observation import Attribute, RegionKind
+from mintpilot.core.task import KEEP_AWAY_M, Action, KeepAway, Reference
 from mintpilot.language import lexicon, verbs
 from mintpilot.language.clauses import ROOM, Reading, is_alive, is_person
 from mintpilot.language.grammar import Found
 from mintpilot.language.phrases import refuse
+from mintpilot.language.rule_phrases import names_region, never_enter
 
 
 def take_off(reading: Reading, found: Found) -> None:
@@ -223,17 +224,22 @@ def told(reading: Reading, found: Found) -> None:
 def keep_out(reading: Reading, found: Found) -> None:
     """Regions and things to stay out of, or away from by a distance."""
     for reference in found.things:
-        if reference.position_m is not None or reference.label == ROOM:
+        kind, is_region = lexicon.AVOIDED.get(reference.label), names_region(reference)
+        if reference.position_m is not None or (reference.label == ROOM and not is_region):
             refuse(reference.phrase, "cannot be stayed out of by name: smoke, doors, marked areas and things can")
-        kind = lexicon.AVOIDED.get(reference.label)
-        if kind is None:
+        if not is_region:
             distance_m = KEEP_AWAY_M if found.distance_m is None else found.distance_m
             reading.keep_away.append(KeepAway(reference=replace(reference, every=True), distance_m=distance_m))
             continue
-        if any(a.value not in ("marked", "restricted") for a in reference.attributes):
+        if kind not in (None, RegionKind.AREA) and reference.attributes:
             refuse(reference.phrase, f": only all {kind} can be stayed out of; say 'avoid the {kind}'")
-        reading.avoid.append(Avoidance(kind=kind, strict="WISH" not in found.said))
-        if found.distance_m is not None:
+        if "WISH" not in found.said:
+            never_enter(reading, reference)
+        elif kind is not None:
+            reading.avoid.append(kind)
+        else:
+            refuse(reference.phrase, "can only be stayed out of altogether: leave 'if possible' out")
+        if found.distance_m is not None and kind is not None:
             what = Reference(phrase=str(kind), label=str(kind))
             reading.keep_away.append(KeepAway(reference=what, distance_m=found.distance_m))
 

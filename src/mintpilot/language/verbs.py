@@ -84,6 +84,10 @@ AVOID = _phrases("avoid | avoiding | bypass | skip | skipping")
 NEVER = _phrases("do not | don't | never")
 STAY = _phrases("stay | staying | keep | keeping | steer | steering | remain")
 OUT_OF = _phrases("out of | away from | clear of | outside of | outside | off")
+ALWAYS = _phrases("always | at all times | all the time | the whole time | for the whole flight")
+WITHIN = _phrases("within | inside | in | inside of")
+BEFORE = _phrases("before you | until you | before | until")
+AT_END = _phrases("at the end | in the end | at the very end")
 OFF_LIMITS = _phrases("is off limits | are off limits | is forbidden | are forbidden | must be avoided")
 SOMEBODY = tuple(
     f"{there}{who}{other}"

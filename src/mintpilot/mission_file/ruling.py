@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterator
 
+from mintpilot.core import rule_patterns as patterns
 from mintpilot.core.errors import MintPilotError
 from mintpilot.core.observation import RegionKind
 from mintpilot.core.rule import About, Rule
@@ -12,7 +13,6 @@ from mintpilot.mission_file.form_checks import nearest
 from mintpilot.mission_file.schema import MissionFile, RuleSpec
 from mintpilot.mission_file.schema_world import MapWorld, SceneWorld
 from mintpilot.mission_file.yaml_places import Fault, Path_
-from mintpilot.rules import patterns
 from mintpilot.rules.formula import propositions_of
 from mintpilot.rules.parsing import parse, proposition
 from mintpilot.rules.satisfying import conflicting, is_trivial
@@ -22,7 +22,7 @@ _DRAWN = re.compile(rf"(?:{'|'.join(RegionKind)}|room)-[1-9]\d*")
 """Ids that a drone gives to what it draws into its own map; which there will be is not known before."""
 _PATTERNS: dict[frozenset[str], Callable[[RuleSpec], Rule]] = {
     frozenset({"never"}): lambda s: patterns.never(proposition(s.never or "")),
-    frozenset({"always"}): lambda s: patterns.always_(proposition(s.always or "")),
+    frozenset({"always"}): lambda s: patterns.always(proposition(s.always or "")),
     frozenset({"never", "before"}): lambda s: patterns.never_before(
         proposition(s.never or ""), proposition(s.before or "")
     ),
@@ -31,8 +31,14 @@ _PATTERNS: dict[frozenset[str], Callable[[RuleSpec], Rule]] = {
         proposition(s.after or ""), proposition(s.eventually or "")
     ),
     frozenset({"end"}): lambda s: patterns.at_end(proposition(s.end or "")),
-    frozenset({"formula"}): lambda s: patterns.written(s.formula or ""),
+    frozenset({"formula"}): lambda s: _written(s.formula or ""),
 }
+
+
+def _written(text: str) -> Rule:
+    """A rule as somebody wrote it in LTLf. Raises as `mintpilot.rules.parsing.parse`."""
+    parse(text)
+    return Rule(text=text.strip(), formula=text.strip())
 
 
 def rules_of(file: MissionFile) -> tuple[Rule, ...]:
@@ -78,6 +84,7 @@ def _conflict(rules: list[Rule]) -> Iterator[Fault]:
 
 def _name_faults(file: MissionFile, rule: Rule, path: Path_) -> Iterator[Fault]:
     goals = [goal.id for goal in file.goals or () if goal.id is not None]
+    looks = [goal.id for goal in file.goals or () if goal.id is not None and goal.action == "look"]
     kinds = [str(kind) for kind in RegionKind]
     on_map = isinstance(file.world, MapWorld)
     regions, rooms = _places(file)
@@ -88,7 +95,7 @@ def _name_faults(file: MissionFile, rule: Rule, path: Path_) -> Iterator[Fault]:
             case About.AT | About.DID:
                 noun, known = "goal with the id", goals
             case About.LOOKED:
-                noun, known = "room", rooms
+                noun, known = "room", [*rooms, *looks]
             case About.WITHIN:
                 noun, known = "thing, region or people", ["people", *regions, *_things(file)]
                 if any(label in known for label in labels_of(what.subject)):

@@ -146,6 +146,7 @@ class RuleSpec(Spec):
     """What every flight keeps, as one pattern: `never`, `always`, `never` with `before`, `first` with `then`, `after`
     with `eventually`, `end`, or `formula`. Each but the last takes one proposition: `in(REGION)`, `inside(REGION)`,
     `touches(REGION)`, `within(THING, METRES)`, `at(GOAL)`, `did(GOAL)`, `looked(ROOM)`, `carrying(LABEL)`.
+    `looked` takes the id of a goal that is a look, too.
     """
 
     never: Words | None = None

@@ -19,8 +19,9 @@ from mintpilot.core.plan import VehicleLimits
 from mintpilot.core.rule import About, Proposition, Ruling
 from mintpilot.core.semantic_map import SemanticMap
 from mintpilot.planning.flyable import squared_gaps
-from mintpilot.planning.lattice import Lattice
+from mintpilot.planning.lattice import Lattice, Words
 from mintpilot.planning.rule_letters import letters_along, piece_m
+from mintpilot.planning.rule_order import covers, hardest, no_harder
 
 
 @dataclass(slots=True, eq=False)
@@ -41,7 +42,8 @@ class RuleGrid:
     labels: tuple[tuple[int, int], ...] = field(init=False)
     """(what holds, what may hold) for each number."""
     sets: list[frozenset[int]] = field(init=False)
-    """Sets of states by number; a set with a state from which a rule can be kept no more is -1."""
+    """Sets of states by number, only the hardest of each; a set from which a rule can be kept no more is -1."""
+    _order: Bools = field(init=False)
     _numbers: dict[frozenset[int], int] = field(init=False)
     _next: dict[tuple[int, int, int], int] = field(init=False)
 
@@ -57,6 +59,7 @@ class RuleGrid:
         found, kinds = np.unique(yes * most + may, return_inverse=True)
         self.kinds = kinds.ravel().astype(np.int64)
         self.labels = tuple(divmod(int(both), int(most)) for both in found)
+        self._order = no_harder(self.ruling.automaton)
         self.sets, self._numbers, self._next = [], {}, {}
 
     def over(self, lattice: Lattice) -> Ints:
@@ -69,6 +72,7 @@ class RuleGrid:
         """Number of a set of states; -1 where a rule may be broken for good."""
         if not all(self.ruling.automaton.alive[s] for s in states):
             return -1
+        states = hardest(states, self._order)
         if states not in self._numbers:
             self._numbers[states] = len(self.sets)
             self.sets.append(states)
@@ -112,6 +116,18 @@ class RuleGrid:
         for now in letters.moments(held):
             number = self.after(number, int(self.kinds[cell]), now)
         return number, letters.after(held)
+
+    def covers(self, one: int, other: int) -> bool:
+        """Whether whatever keeps the rules from the one set on keeps them from the other."""
+        return covers(self.sets[one], self.sets[other], self._order)
+
+    def easier(self, sets: Ints) -> Words:
+        """(n,) bit sets of those of these sets, each by its place, that are no harder than each; 0s where n > 64."""
+        if len(sets) > 64:
+            return np.zeros(len(sets), np.uint64)
+        bits = [[1 << j for j, easy in enumerate(sets) if i != j and self.covers(int(one), int(easy))]
+                for i, one in enumerate(sets)]  # fmt: skip
+        return np.array([sum(row) for row in bits], np.uint64)
 
     def is_kept(self, number: int) -> bool:
         """Whether all rules are kept if the mission ends now."""

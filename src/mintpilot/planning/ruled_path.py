@@ -12,7 +12,7 @@ from mintpilot.core.semantic_map import SemanticMap
 from mintpilot.planning.flyable import known_flyable
 from mintpilot.planning.lattice import lattice_of
 from mintpilot.planning.rule_labels import RuleGrid
-from mintpilot.planning.rule_search import ways_from
+from mintpilot.planning.rule_search import RuledGround, RuledWays
 from mintpilot.planning.terrain import start_cell
 
 
@@ -32,7 +32,7 @@ def keeps_rules(way_m: Floats, ruling: Ruling, map: SemanticMap, limits: Vehicle
     planned = grid.flown(start, as_along_m[:2], ruling.held)
     planned = grid.followed(planned, np.ravel_multi_index(tuple(cells.T), map.frame.shape), ruling.held)
     came = grid.flown(start, way_m, ruling.held)
-    return came >= 0 and planned >= 0 and grid.sets[came] <= grid.sets[planned]
+    return came >= 0 and planned >= 0 and grid.covers(planned, came)
 
 
 def ruled_path(
@@ -51,12 +51,14 @@ def ruled_path(
     if begun < 0:
         return None
     sets, table = grid.table(begun, ruling.held)
-    ways = ways_from(
-        lattice, lattice.allowed, lattice.node(start), sets, table, grid.over(lattice), np.zeros(lattice.size)
-    )
+    kept = np.array([grid.is_kept(int(number)) for number in sets])
+    ground = RuledGround(lattice=lattice, allowed=lattice.allowed, sets=sets, table=table, kinds=grid.over(lattice),
+                         uncertain=np.zeros(lattice.size), easier=grid.easier(sets), kept=kept)  # fmt: skip
+    ways = RuledWays(ground=ground, node=lattice.node(start), rest=np.zeros(lattice.size))
+    ways.grow()
     node = lattice.node(goal)
-    ends = [(cost, state) for state, cost in ways.at(node) if grid.is_kept(int(sets[state]))]
+    ends = [(cost, state) for state, cost in ways.at(node) if kept[state]]
     if not ends:
         return None
-    cells = ways.path(node, min(ends)[1])
+    cells = lattice.cells(ways.path(node, min(ends)[1]))
     return np.vstack([np.asarray([start_m], float), map.frame.centres_of(cells)])

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import heapq
 import itertools
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from functools import cache
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
-from mintpilot.core.geometry import Ints
+from mintpilot.core.geometry import Floats, Ints
 from mintpilot.core.message import Message, message
 from mintpilot.core.plan import LeftUndone, Shortage, Site, Stop
 from mintpilot.core.rule import Ruling
@@ -20,6 +20,7 @@ from mintpilot.planning.decision_list import ParetoPath
 from mintpilot.planning.legs import Cell3
 from mintpilot.planning.route import Route
 from mintpilot.planning.rule_labels import RuleGrid
+from mintpilot.planning.rule_search import RuledWays
 from mintpilot.planning.ruled_legs import RuledLegs
 from mintpilot.planning.selection import Selection, Selector
 from mintpilot.planning.wanted_stops import WantedStops, wanted_stops
@@ -30,6 +31,8 @@ MOST_BOUNDED = 8
 """Up to so many stops what is left to fly is bounded by the best order of them without rules."""
 DECIMALS_S = 6
 """Decimal places to which seconds are compared."""
+AHEAD = 16.0
+"""Ways are grown so much further than the least that may be better, edges, then twice that: that costs less time."""
 END = "end"
 """Id of the stop at the place where the rules want the flight to end."""
 
@@ -69,6 +72,59 @@ class _Made:
     mask: int
     """Regions that it enters."""
     found: Selection
+
+
+@dataclass(slots=True, kw_only=True, eq=False)
+class _Onward:
+    """The ways on from a label, as far as they are grown."""
+
+    ways: RuledWays
+    ended: bool
+    """Whether it is settled how the flight may end after the label."""
+    ahead: float = AHEAD
+    """They are grown so much further than they must be, edges."""
+    told: set[tuple[int, int]] = field(default_factory=set)
+    """Stops and sets that were reached."""
+
+
+@dataclass(slots=True, kw_only=True, eq=False)
+class _Least:
+    """The least that flights still cost if there were no rules, what they leave undone counted."""
+
+    wanted: WantedStops
+    legs: RuledLegs
+    blocked: int
+    edge_s: float
+    _after: dict[tuple[int, Cell3], float] = field(default_factory=dict)
+    _rest: dict[int, Floats] = field(default_factory=dict)
+
+    def after(self, done: int, place: Cell3) -> float:
+        """Seconds, after some stops at a place."""
+        if len(self.wanted.stops) > MOST_BOUNDED:
+            return 0.0
+        if (done, place) not in self._after:
+            node = self.legs.lattice.node(place)
+            onward = [
+                float(self.legs.away(there, self.blocked)[node]) * self.edge_s
+                + stop.dwell_s
+                + self.after(done | 1 << i, there)
+                for i, stop, there in self.wanted.next(done)
+            ]
+            self._after[done, place] = min([self.wanted.left_s(done), *onward])
+        return self._after[done, place]
+
+    def rest(self, done: int) -> Floats:
+        """Edges (nodes,) that lie before every node, after some stops."""
+        if done not in self._rest:
+            rest = np.full(self.legs.lattice.size, self.wanted.left_s(done) / self.edge_s)
+            if len(self.wanted.stops) > MOST_BOUNDED:
+                rest[:] = 0.0
+            else:
+                for i, stop, there in self.wanted.next(done):
+                    left_s = stop.dwell_s + self.after(done | 1 << i, there)
+                    rest = np.minimum(rest, self.legs.away(there, self.blocked) + left_s / self.edge_s)
+            self._rest[done] = rest
+        return self._rest[done]
 
 
 class RuledSelector:
@@ -118,6 +174,7 @@ class RuledSelector:
             self._made.append(_Made(wanted=wanted, blocked=blocked, mask=mask, found=found))
         return found
 
+    @cached_property
     def _begun(self) -> tuple[int, int]:
         """Set of states and propositions held in the middle of the plan's first cell."""
         held, start = self._ruling.held, self._itinerary.start
@@ -128,7 +185,7 @@ class RuledSelector:
 
     def _keeps(self, found: Selection) -> bool:
         """Whether a plan made without regard to rules keeps them, its way home included."""
-        rules, held = self._begun()
+        rules, held = self._begun
         place = self._itinerary.start
         for number, way in zip(found.route.order, found.route.paths, strict=True):
             rules = self._grid.followed(rules, self._legs.flats(way.path), held)
@@ -143,63 +200,74 @@ class RuledSelector:
 
     def _searched(self, plain: Selection, wanted: WantedStops, blocked: int, uncertain: int) -> Selection | None:
         """Labels in the order of the least that a route through them costs: the ways without rules bound the rest."""
-        rules, held = self._begun()
+        rules, held = self._begun
         if rules < 0:
             return None
-        least = self._least(wanted, blocked)
+        legs, edge_s = self._legs, self._itinerary.edge_s
+        least = _Least(wanted=wanted, legs=legs, blocked=blocked, edge_s=edge_s)
         start = self._itinerary.start
         first = _Label(cost_s=self._plain.start_s, done=0, order=(), place=start, rules=rules, held=held, paths=())
-        heap: list[tuple[float, int, _Label]] = [(first.cost_s, 0, first)]
-        count, seen = itertools.count(1), set[tuple[int, Cell3, int, int]]()
+        heap: list[tuple[float, int, _Label, _Onward | None]] = [(first.cost_s, 0, first, None)]
+        count, seen = itertools.count(1), dict[tuple[int, Cell3, int], list[int]]()
         best: tuple[tuple[float, ...], _Label, _Ending] | None = None
+
+        homeward = self._itinerary.problem.home_m is not None
+
+        def better(label: _Label, end: _Ending) -> None:
+            nonlocal best
+            left_s = wanted.left_s(label.done)
+            rank = (round(label.cost_s + end.hop_s + left_s, DECIMALS_S), left_s, label.cost_s)
+            if best is None or rank < best[0]:
+                best = (rank, label, end)
+
         while heap:
-            bound_s, _, here = heapq.heappop(heap)
-            key = (here.done, here.place, here.rules, here.held)
-            if key in seen:
-                continue
+            bound_s, _, here, onward = heapq.heappop(heap)
             if best is not None and round(bound_s, DECIMALS_S) > best[0][0]:
                 break
-            if len(seen) >= MAX_LABELS:
-                self.notes.add(
-                    message(
-                        "more than {most} combinations of stops and rules; the best plan found is taken",
-                        most=MAX_LABELS,
+            if onward is None:
+                before = seen.setdefault((here.done, here.place, here.held), [])
+                if any(self._grid.covers(here.rules, one) for one in before):
+                    continue  # it came there before, for no more, and is no worse off
+                if sum(map(len, seen.values())) >= MAX_LABELS:
+                    self.notes.add(
+                        message(
+                            "more than {most} combinations of stops and rules; the best plan found is taken",
+                            most=MAX_LABELS,
+                        )
                     )
-                )
-                break
-            seen.add(key)
-            end = self._ended(here, blocked, uncertain) if here.done else None
-            if end is not None:
-                left_s = wanted.left_s(here.done)
-                rank = (round(here.cost_s + end.hop_s + left_s, DECIMALS_S), left_s, here.cost_s)
-                if best is None or rank < best[0]:
-                    best = (rank, here, end)
-            for after in self._onward(here, wanted, blocked, uncertain):
-                heapq.heappush(heap, (after.cost_s + least(after.done, after.place), next(count), after))
+                    break
+                before.append(here.rules)
+                worth = best is None or round(here.cost_s + wanted.left_s(here.done), DECIMALS_S) <= best[0][0]
+                end = self._ended(here, blocked, uncertain) if here.done and worth else None
+                if end is not None:
+                    better(here, end)
+                if not any(wanted.next(here.done)) and (end is not None or homeward):
+                    continue
+                ways = legs.ways((here.place, here.rules, here.held), blocked, uncertain, least.rest(here.done))
+                onward = _Onward(ways=ways, ended=end is not None or not here.done)
+            next_s = heap[0][0] if heap else bound_s
+            onward.ways.grow((max(bound_s, next_s) - here.cost_s) / edge_s + onward.ahead)
+            onward.ahead *= 2
+            hop = self._hop(here, onward, wanted.left_s(here.done) / edge_s)
+            if hop is not None:
+                better(here, hop)
+            for after in self._onward(here, onward, wanted):
+                heapq.heappush(heap, (after.cost_s + least.after(after.done, after.place), next(count), after, None))
+            if np.isfinite(onward.ways.reach):
+                heapq.heappush(heap, (here.cost_s + onward.ways.reach * edge_s, next(count), here, onward))
         return None if best is None else self._chosen(plain, wanted.stops, best[1], best[2])
 
-    def _least(self, wanted: WantedStops, blocked: int) -> Callable[[int, Cell3], float]:
-        """The least that any route still costs after some stops at a place, what it leaves undone counted, seconds."""
-
-        @cache
-        def least(done: int, place: Cell3) -> float:
-            if len(wanted.stops) > MOST_BOUNDED:
-                return 0.0
-            onward = [
-                self._plain.flight_s(place, there, blocked) + stop.dwell_s + least(done | 1 << i, there)
-                for i, stop, there in wanted.next(done)
-            ]
-            return min([wanted.left_s(done), *onward])
-
-        return least
-
-    def _onward(self, here: _Label, wanted: WantedStops, blocked: int, uncertain: int) -> Iterator[_Label]:
-        """The labels after one more stop."""
-        ways = self._legs.ways(here.place, here.rules, here.held, blocked, uncertain)
+    def _onward(self, here: _Label, onward: _Onward, wanted: WantedStops) -> Iterator[_Label]:
+        """The labels after one more stop, that are not told yet."""
+        ways, lattice = onward.ways, self._legs.lattice
         for i, stop, place in wanted.next(here.done):
-            for state, _ in ways.at(self._legs.lattice.node(place)):
+            for state, _ in ways.at(lattice.node(place)):
+                if (i, state) in onward.told:
+                    continue
+                onward.told.add((i, state))
                 way = self._legs.path(ways, place, state)
-                after, held = self._grid.done(int(ways.sets[state]), self._legs.flat(place), stop.id, here.held)
+                number = int(ways.ground.sets[state])
+                after, held = self._grid.done(number, self._legs.flat(place), stop.id, here.held)
                 cost_s = here.cost_s + way.cost * self._itinerary.edge_s + stop.dwell_s
                 if after >= 0 and cost_s <= self._plain.battery_s + TOLERANCE:
                     yield _Label(
@@ -213,27 +281,39 @@ class RuledSelector:
                     )
 
     def _ended(self, here: _Label, blocked: int, uncertain: int) -> _Ending | None:
-        """How the flight may end after this; None: not with the rules kept."""
-        spare_s = self._plain.battery_s - here.cost_s + TOLERANCE
-        if self._itinerary.problem.home_m is None and self._grid.is_kept(here.rules):
-            return _Ending()
-        ways = self._legs.ways(here.place, here.rules, here.held, blocked, uncertain)
-        kept = np.array([self._grid.is_kept(int(number)) for number in ways.sets])
-        cost = np.where(np.tile(kept, self._legs.lattice.size), ways.cost, np.inf)
-        if self._itinerary.problem.home_m is not None:
-            if self._itinerary.home is None:
-                return None
-            first = self._legs.lattice.node(self._itinerary.home) * len(kept)
-            row = first + int(np.argmin(cost[first : first + len(kept)]))
-        else:
-            row = int(np.argmin(np.round(cost, DECIMALS_S)))
-        if not np.isfinite(cost[row]) or cost[row] * self._itinerary.edge_s > spare_s:
-            return None
-        node, state = divmod(row, len(kept))
-        way = self._legs.path(ways, _cell(self._legs.lattice.cells(np.array([node]))[0]), state)
+        """How the flight may end here, with the way home where one is wanted; None: not with the rules kept."""
         if self._itinerary.problem.home_m is None:
-            return _Ending(hop_s=way.cost * self._itinerary.edge_s, hop=way)
+            return _Ending() if self._grid.is_kept(here.rules) else None
+        home = self._itinerary.home
+        if home is None:
+            return None
+        spare = (self._plain.battery_s - here.cost_s + TOLERANCE) / self._itinerary.edge_s
+        rest, node = self._legs.away(home, blocked), self._legs.lattice.node(home)
+        ways = self._legs.ways((here.place, here.rules, here.held), blocked, uncertain, rest)
+        ahead, ends = AHEAD, list[tuple[float, int]]()
+        while not ends and ways.reach <= spare and np.isfinite(ways.reach):
+            ways.grow(min(ways.reach + ahead, spare))
+            ahead *= 2
+            ends = [(cost, state) for state, cost in ways.at(node) if ways.ground.kept[state] and cost <= spare]
+        if not ends:
+            return None
+        way = self._legs.path(ways, home, min(ends)[1])
         return _Ending(home_s=way.cost * self._itinerary.edge_s, homeward=way.mask)
+
+    def _hop(self, here: _Label, onward: _Onward, left: float) -> _Ending | None:
+        """The way to the nearest place where the flight may end, once it is known; None: none, or it was told."""
+        ways, edge_s = onward.ways, self._itinerary.edge_s
+        if onward.ended or self._itinerary.problem.home_m is not None or ways.nearest < 0:
+            return None
+        cost, count = float(ways.cost[ways.nearest]), len(ways.ground.sets)
+        if cost + left >= ways.reach:
+            return None
+        onward.ended = True
+        if here.cost_s + cost * edge_s > self._plain.battery_s + TOLERANCE:
+            return None
+        node, state = divmod(ways.nearest, count)
+        way = self._legs.path(ways, _cell(self._legs.lattice.cells(np.array([node]))[0]), state)
+        return _Ending(hop_s=way.cost * edge_s, hop=way)
 
     def _chosen(
         self,

@@ -10,7 +10,7 @@ from mintpilot.core.errors import InputError
 from mintpilot.core.gap import PRESENT, Belief, GapKind, KnowledgeGap
 from mintpilot.core.geometry import Vec3
 from mintpilot.core.message import Message, Named, joined, message
-from mintpilot.core.observation import PERSON, RegionKind
+from mintpilot.core.observation import PERSON
 from mintpilot.core.plan import PRICE_S, PlanningProblem, Stop, VehicleLimits
 from mintpilot.core.rule import Ruling
 from mintpilot.core.semantic_map import Knowledge, Region, SemanticMap
@@ -77,15 +77,13 @@ def find_gaps(
             of the map.
         prior_passable: for regions that have no prior of their own.
         finished: ids of stops already fulfilled; they are left out, and gaps that only they depended on too.
-        honour_wishes: False gives up avoidances that are not strict.
+        honour_wishes: False gives up what is only wished, and opens the gaps that rules settle: they say what is flown.
     """
     things = things_of(map)
     view = Standpoint(start_m=start_m, towards_m=map.frame.box.centre_m)
     bound = bind(task, things, view, finished=finished)
-    avoided = {a.kind for a in task.avoid if a.strict or honour_wishes}
-    wished = avoided - {a.kind for a in task.avoid if a.strict}
-    regions = {r.id for r in map.regions if r.kind in avoided or (honour_wishes and r.id.startswith(PREFIX))}
-    gaps = [*bound.gaps.values(), *obstacle_gaps(map, things, prior_passable=prior_passable, leave_out=regions)]
+    avoided = _kept_out(map, task) if honour_wishes else ()
+    gaps = [*bound.gaps.values(), *obstacle_gaps(map, things, prior_passable=prior_passable, leave_out=avoided)]
     stops = list(bound.stops)
     if task.seeks_people:
         looked_at = {site.label for stop in stops if not stop.gap for site in stop.sites}
@@ -101,7 +99,9 @@ def find_gaps(
         problems=tuple(dict.fromkeys((*bound.problems, *_heights(task, map)))),
         sought=_sought(task, things, bound),
         unseen=tuple(bound.unmatched.values()),
-        wishes=tuple(sorted(r.id for r in map.regions if _is_wish(r, wished) and r.passable is Knowledge.OPEN)),
+        wishes=tuple(
+            sorted(r.id for r in map.regions if honour_wishes and _is_wish(r, task) and r.passable is Knowledge.OPEN)
+        ),
     )
 
 
@@ -113,8 +113,14 @@ def _sought(task: Task, things: Sequence[Thing], bound: Binding) -> str:
     return "" if seen or not task.seeks_people else SOMEBODY
 
 
-def _is_wish(region: Region, wished: set[RegionKind]) -> bool:
-    return region.kind in wished or region.id.startswith(PREFIX)
+def _kept_out(map: SemanticMap, task: Task) -> frozenset[str]:
+    """Ids of the regions that nobody need be asked about: rules or wishes keep out of them."""
+    ruled = {rule.keeps_out_of for rule in task.rules}
+    return frozenset(r.id for r in map.regions if _is_wish(r, task) or ruled & {r.id, str(r.kind)})
+
+
+def _is_wish(region: Region, task: Task) -> bool:
+    return region.kind in task.avoid or region.id.startswith(PREFIX)
 
 
 def frame_problem(

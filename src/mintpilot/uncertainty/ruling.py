@@ -76,8 +76,9 @@ def letters_of(
                 at |= flag
             case About.DID if _is_goal(stop, task, what.subject):
                 begins |= flag
-            case About.LOOKED if stop.action is Action.LOOK and _is_room(stop, map, what.subject):
-                begins |= flag if seen_from_m is None or sees_into(map, what.subject, seen_from_m) else 0
+            case About.LOOKED if stop.action is Action.LOOK:
+                room = _room(stop, map, task, what.subject, seen_from_m)
+                begins |= flag if room and (seen_from_m is None or sees_into(map, room, seen_from_m)) else 0
             case About.CARRYING if stop.action is Action.PICK and _is_thing(stop, task, what.subject):
                 begins |= flag
             case About.CARRYING if stop.action is Action.DELIVER:
@@ -98,11 +99,17 @@ def _is_goal(stop: Stop, task: Task, goal: str) -> bool:
     return 0 < number <= len(task.subgoals) and task.subgoals[number - 1].id == goal
 
 
-def _is_room(stop: Stop, map: SemanticMap, room: str) -> bool:
-    if stop.id == look_id(room):
-        return True
-    viewpoints = [one.viewpoint_m for one in map.rooms if one.id == room]
-    return any(math.dist(site.position_m, at) <= LOOK_REACH_M for site in stop.sites for at in viewpoints)
+def _room(stop: Stop, map: SemanticMap, task: Task, subject: str, at_m: Floats | None) -> str:
+    """Id of the room that a look goes to, where ``looked`` speaks of it by its own id or by that of the goal.
+
+    Of several that it may go to, the one whose viewpoint is nearest; empty where it speaks of none of them.
+    """
+    if stop.id == look_id(subject):
+        return subject
+    rooms = [one for one in map.rooms if one.id == subject or _is_goal(stop, task, subject)]
+    meant = [r for r in rooms if any(math.dist(s.position_m, r.viewpoint_m) <= LOOK_REACH_M for s in stop.sites)]
+    near_m = stop.sites[0].position_m if at_m is None else at_m
+    return min(((math.dist(near_m, r.viewpoint_m), r.id) for r in meant), default=(0.0, ""))[1]
 
 
 def sees_into(map: SemanticMap, room: str, at_m: Floats) -> bool:

@@ -1,58 +1,41 @@
-"""The patterns of mission files as rules: ``{never: P, before: Q}`` → words and formula."""
+"""The patterns of rules in time → words and formula, for mission files and instructions (method, section 14)."""
 
 from __future__ import annotations
 
 from mintpilot.core.rule import About, Proposition, Rule
-from mintpilot.rules.formula import And, Atom, Formula, Or, Release, Until, always, eventually, negated
-from mintpilot.rules.parsing import parse
 
 
 def never(what: Proposition) -> Rule:
     """``what`` at no moment."""
-    return _rule(f"never {said(what)}", always(Atom(what, False)))
+    return Rule(text=f"never {said(what)}", formula=f"G !{what}")
 
 
-def always_(what: Proposition) -> Rule:
+def always(what: Proposition) -> Rule:
     """``what`` at every moment; to be always in a region means with the whole body."""
     if what.about is About.IN:
         what = Proposition(about=About.INSIDE, subject=what.subject)
-    return _rule(f"always {said(what)}", always(Atom(what)))
+    return Rule(text=f"always {said(what)}", formula=f"G {what}")
 
 
 def never_before(what: Proposition, before: Proposition) -> Rule:
     """``what`` at no moment before ``before``; where ``before`` never comes, never."""
-    return _rule(
-        f"never {said(what)} before it {done(before)}", Release(Atom(before), Or(Atom(what, False), Atom(before)))
-    )
+    return Rule(text=f"never {said(what)} before it {done(before)}", formula=f"({before} R (!{what} | {before}))")
 
 
 def first_then(first: Proposition, then: Proposition) -> Rule:
     """Both, ``then`` not before ``first``."""
-    formula: Formula = And(Until(Atom(then, False), Atom(first)), eventually(Atom(then)))
-    return _rule(f"first {said(first)}, then {said(then)}", formula)
+    return Rule(text=f"first {said(first)}, then {said(then)}", formula=f"((!{then} U {first}) & F {then})")
 
 
 def after_eventually(after: Proposition, then: Proposition) -> Rule:
     """Whenever ``after`` holds, ``then`` at that moment or later."""
-    return _rule(
-        f"once it {done(after)}, {said(then)} at some time after it",
-        always(Or(negated(Atom(after)), eventually(Atom(then)))),
-    )
+    text = f"once it {done(after)}, {said(then)} at some time after it"
+    return Rule(text=text, formula=f"G (!{after} | F {then})")
 
 
 def at_end(what: Proposition) -> Rule:
     """``what`` at the last moment."""
-    return _rule(f"at the end {said(what)}", eventually(always(Atom(what))))
-
-
-def written(text: str) -> Rule:
-    """A rule as somebody wrote it in LTLf. Raises as `mintpilot.rules.parsing.parse`."""
-    parse(text)
-    return Rule(text=text.strip(), formula=text.strip())
-
-
-def _rule(text: str, formula: Formula) -> Rule:
-    return Rule(text=text, formula=str(formula))
+    return Rule(text=f"at the end {said(what)}", formula=f"F G {what}")
 
 
 def said(what: Proposition) -> str:
