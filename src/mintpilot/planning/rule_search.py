@@ -90,7 +90,7 @@ class RuledWays:
             )  # fmt: skip
             if found == _FULL:
                 row, far, after = self._pool
-                self._pool = tuple(np.concatenate([one, np.empty_like(one)]) for one in (row, far, after))
+                self._pool = (np.tile(row, 2), np.tile(far, 2), np.tile(after, 2))
         self.reach, self.nearest = found, int(self._queue[4])
 
     def at(self, node: int) -> list[tuple[int, float]]:
