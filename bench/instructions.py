@@ -39,11 +39,11 @@ NOTES = (
     "(refused since), *fly to my house* means the house (kept). Four more were flagged that mean the same in other "
     "words; their references have that reading too now.",
     "List c at first reading: 70 of 151 within the verbs as meant (46.4 %), 4 of 338 silently wrong (at most 2.69 % at "
-    "95 %): *drop the stone on the dog* was a delivery, *stay near the wall and go to the gate* went to both (both are "
-    "refused since); *how many people are in the hall* leaves out the hall, *look for survivors* looks for everybody who "
-    "needs help (both kept, and counted as wrong).",
-    "Lists a and b are by somebody who had read the rules before, not by strangers. The goal, none silently wrong within "
-    "1 % at 95 % on 300 that nobody mended after, is not shown by them.",
+    "95 %): *drop the stone on the dog* was a delivery, *stay near the wall and go to the gate* went to both (both "
+    "are refused since); *how many people are in the hall* leaves out the hall, *look for survivors* looks for "
+    "everybody who needs help (both kept, and counted as wrong).",
+    "Lists a and b are by somebody who had read the rules before, not by strangers. The goal, none silently wrong "
+    "within 1 % at 95 % on 300 that nobody mended after, is not shown by them.",
     "Most refusals are one unknown word beside a known one (*the leaking valve*), which is a rule, and phrases.",
 )
 

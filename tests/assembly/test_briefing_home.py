@@ -23,7 +23,7 @@ def needed_s(folder: Path, returns: str) -> float:
     file.write_text(yaml.safe_dump(text), encoding="utf-8")
     world = build_world(read_mission(file), base=folder, seed=None)
     lines = briefing_of(deliberation_parts(world, Choices()), world.map).lines
-    (needs,) = [m for line in lines if (m := re.search(r"needs (\d+) s", line))]
+    (needs,) = [m for line in lines if (m := re.search(r"needs (\d+) s", str(line)))]
     return float(needs[1])
 
 

@@ -23,6 +23,7 @@ from mintpilot.recording.report import report_html
 from mintpilot.recording.terminal_report import print_report
 from mintpilot.wording.speech import Speech
 
+pytestmark = pytest.mark.long
 QUOTED = re.compile("„[^“]*“|«[^»]*»|“[^”]*”|'[^']*'|\"[^\"]*\"|`[^`]*`")
 ENGLISH = re.compile(
     r"\b(the|is|are|of|and|with|nothing|it|from|that|which|there|asked|known|whatever|takes|leaves|because|reached|"

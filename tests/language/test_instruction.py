@@ -146,7 +146,7 @@ def test_a_wish_may_be_given_up_and_an_order_not() -> None:
 def test_slowly_is_of_the_whole_flight() -> None:
     task = read("Go slowly to the hut")
     assert task.slowly
-    assert list(step_lines(task)) == ["1 go to the hut", "the whole flight slowly"]
+    assert list(map(str, step_lines(task))) == ["1 go to the hut", "the whole flight slowly"]
 
 
 def test_words_of_the_map_count_as_known() -> None:

@@ -53,7 +53,7 @@ def begun_vehicle():  # type: ignore[no-untyped-def]
 
 
 def test_the_briefing_says_steps_unknowns_and_battery() -> None:
-    lines = "\n".join(briefing_of(PARTS, WORLD.map).lines)
+    lines = "\n".join(map(str, briefing_of(PARTS, WORLD.map).lines))
     assert "1 " in lines
     assert "the smoke" in lines
     assert "Battery" in lines
@@ -77,7 +77,7 @@ def test_a_task_that_a_model_read_is_always_briefed() -> None:
     read = replace(WORLD, task=replace(WORLD.task, needs_confirmation=True))
     verdict, _ = fly(RecordedOperator([Reply.NO]), world=read, briefs=False)
     assert "stayed on the ground" in str(verdict.reason)
-    assert any("language model" in line for line in briefing_of(replace(PARTS, task=read.task), WORLD.map).lines)
+    assert any("language model" in str(line) for line in briefing_of(replace(PARTS, task=read.task), WORLD.map).lines)
 
 
 @pytest.mark.parametrize(("standing", "by"), [(Standing.UNCONFIRMED, "typed"), (Standing.PLAIN, "voice")])

@@ -50,13 +50,13 @@ def test_a_free_way_is_no_trouble() -> None:
 
 
 def test_trouble_close_ahead_stops_at_once() -> None:
-    assert "smoke-1" in PathMonitor(WAY, LIMITS).assess(with_cloud(hall(), (2.0, 3.0)), (1.0, 2.0, 1.0))
+    assert "smoke-1" in str(PathMonitor(WAY, LIMITS).assess(with_cloud(hall(), (2.0, 3.0)), (1.0, 2.0, 1.0)))
 
 
 def test_trouble_far_ahead_must_be_seen_again() -> None:
     monitor, clouded = PathMonitor(WAY, LIMITS), with_cloud(hall(), (7.0, 8.0))
     looks = [monitor.assess(clouded, (1.0, 2.0, 1.0)) for _ in range(CONFIRMING_LOOKS)]
-    assert looks[:-1] == [""] * (CONFIRMING_LOOKS - 1)
+    assert not any(looks[:-1])
     assert looks[-1]
 
 

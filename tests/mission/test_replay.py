@@ -10,7 +10,7 @@ import pytest
 from tests.mission.scenes import hall, wall
 
 from mintpilot.assembly.api import run_mission
-from mintpilot.assembly.components import Choices, components_for
+from mintpilot.assembly.components import Choices, VehicleChoice, components_for
 from mintpilot.assembly.replaying import parts_of, verify_run
 from mintpilot.assembly.worlds import build_world
 from mintpilot.cli.main import main
@@ -44,6 +44,23 @@ def test_a_mission_with_questions_orders_and_news_is_equal(run: Path) -> None:
     assert done.verification.steps > 50
     assert done.verification.deliberations >= 4
     assert done.cut == ""
+
+
+def test_the_strategy_is_the_one_that_was_flown_with_its_arguments_and_all_that_it_is_put_into() -> None:
+    world = build_world(hall(), base=Path(), seed=3)
+    for choices in (
+        Choices(vehicle=VehicleChoice.KINEMATIC),
+        Choices(vehicle=VehicleChoice.KINEMATIC, strategy="knowno", strategy_arguments={"quantile": 0.8}),
+    ):
+        with components_for(world, choices, operators=(), recorder=MemoryRecorder()) as made:
+            assert layers(parts_of(made.started()).strategy) == layers(made.parts.strategy)
+
+
+def layers(strategy: object) -> list[tuple[str, object]]:
+    """What a strategy is made of, from outside in."""
+    inner = getattr(strategy, "strategy", None)
+    own = {key: value for key, value in vars(strategy).items() if isinstance(value, int | float | str)}
+    return [(type(strategy).__name__, own), *(layers(inner) if inner is not None else [])]
 
 
 def test_the_command_says_so(run: Path, capsys: pytest.CaptureFixture[str]) -> None:

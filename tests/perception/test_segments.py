@@ -8,6 +8,9 @@ from people_to_see import POSTURES, picture_of, posture
 from scenes import Block, picture
 
 from mintpilot.core.observation import OBJECT, Detection, Frame
+from mintpilot.perception import lump_weights, lumps
+from mintpilot.perception.door_frames import EVIDENCE
+from mintpilot.perception.door_weights import WEIGHTS
 from mintpilot.perception.segments import SegmentPerception
 
 TABLE = Block(lo_m=(1.6, -0.8, 0.70), hi_m=(2.8, 0.8, 0.74), colour=(0.55, 0.5, 0.45))
@@ -100,6 +103,24 @@ def test_a_wall_between_a_corner_and_a_panel_is_no_door() -> None:
     corner = Block(lo_m=(2.0, 1.0, 0.0), hi_m=(4.0, 1.2, 3.0), colour=(0.6, 0.6, 0.55))
     stripe = Block(lo_m=(3.99, -0.06, 0.0), hi_m=(4.0, 0.0, 3.0), colour=(0.2, 0.2, 0.25))
     assert not [d for d in detect(picture([wall, corner, stripe], pitch_rad=0.12)) if d.label == "door"]
+
+
+def test_a_shut_door_between_panels_as_wide_as_it_is_one_door() -> None:
+    """Battens between the panels run up past the lintel, and a rail above goes on all along the wall."""
+    wood, dark = (0.5, 0.36, 0.24), (0.34, 0.24, 0.16)
+    wall = Block(lo_m=(4.0, -3, 0), hi_m=(4.3, 3, 2.8), colour=wood)
+    leaf = Block(lo_m=(3.99, -0.4, 0.0), hi_m=(4.0, 0.5, 2.05), colour=dark)
+    battens = [Block(lo_m=(3.985, y, 0), hi_m=(4.0, y + 0.06, 2.4), colour=dark) for y in (-2.3, -1.4, 1.4, 2.3)]
+    rail = Block(lo_m=(3.985, -3, 2.4), hi_m=(4.0, 3, 2.46), colour=dark)
+    doors = [d for d in detect(picture([wall, leaf, *battens, rail], pitch_rad=0.12)) if d.label == "door"]
+    likely = [d for d in doors if d.score > 0.5]
+    assert len(likely) == 1
+    assert np.linalg.norm(np.asarray(likely[0].position_m)[:2] - (4.0, 0.05)) < 0.15
+
+
+def test_every_piece_of_evidence_has_its_weight() -> None:
+    assert tuple(name for name, _ in WEIGHTS) == EVIDENCE
+    assert tuple(name for name, _ in lump_weights.WEIGHTS) == lumps.FEATURES
 
 
 def test_a_bare_wall_has_no_door_and_a_sunlit_floor_no_fire() -> None:

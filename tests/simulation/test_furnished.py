@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from mintpilot.simulation.furnished import doors, fittings, furniture, people, room, things
+from mintpilot.simulation.furnished.library_style import LIBRARY
 from mintpilot.simulation.furnished.people import MORE_POSTURES, person
 from mintpilot.simulation.furnished.room import HEIGHT_M, furnished_room, world_of
 from mintpilot.simulation.furnished.style import Style
@@ -17,7 +18,7 @@ SEEDS = range(10)
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("style", FRESH.values(), ids=FRESH)
+@pytest.mark.parametrize("style", (FRESH | {"library": LIBRARY}).values(), ids=[*FRESH, "library"])
 def test_rooms_can_be_drawn_and_all_in_them_is_within_their_walls(style: Style) -> None:
     mujoco: Any = pytest.importorskip("mujoco")
     for seed in SEEDS:

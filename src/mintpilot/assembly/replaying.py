@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from mintpilot.assembly.policies import make_metric, make_planner
-from mintpilot.assembly.registry import load
+from mintpilot.assembly.strategies import make_objective, make_strategy, parse_arguments
 from mintpilot.assembly.talk import Talk
 from mintpilot.core.errors import RecordError
 from mintpilot.core.events import MissionStarted, Stepped
@@ -53,14 +53,15 @@ def verify_run(run: Path) -> Replayed:
 
 def parts_of(started: MissionStarted) -> DeliberationParts:
     """The parts of deliberation that the mission began with."""
-    asking = started.mission.asking
+    asking, seed = started.mission.asking, started.seed or 0
+    name, *arguments = started.strategy.split(" ")
     return DeliberationParts(
         mission=started.mission,
         task=started.task,
         planner=make_planner(started.planner),
-        strategy=load("strategy", started.strategy)(),
+        strategy=make_strategy(name, seed=seed, arguments=parse_arguments(arguments)),
         metric=make_metric(asking.impact_metric),
-        objective=load("objective", asking.objective)(),
+        objective=make_objective(asking.objective, seed=seed),
         groups=started.groups,
         word=Talk(lang=started.language, names=dict(started.names)).word,
     )

@@ -50,10 +50,14 @@ def faults(
 
 def _bench(trials: int, out: Path, jobs: int, *, as_json: bool) -> ExitCode:
     from mintpilot.benchmark.intervals import clopper_pearson_upper
-    from mintpilot.conformance.faults.campaign import FaultStore, counts, planned, run_campaign
+    from mintpilot.conformance.faults.campaign import FaultStore, counts, lacking, planned, run_campaign
     from mintpilot.conformance.faults.summary import adapter_rows, fault_rows
 
-    store, keys = FaultStore(out), planned(counts(trials))
+    wanted = counts(trials)
+    left_out = {adapter: why for adapter in wanted if (why := lacking(adapter))}
+    for adapter, why in left_out.items():
+        print(f"{adapter.value}: left out: {why}", file=sys.stderr)
+    store, keys = FaultStore(out), [key for key in planned(wanted) if key[0] not in left_out]
     done = sum(key in store.records for key in keys)
 
     def heard(record: FaultRecord) -> None:

@@ -115,7 +115,7 @@ POLITE = _phrases(
     mission is to | mission | task | make sure to | be sure to | you should | you must | we need you to | go and |
     make sure you | be sure you"""
 )
-AFTERTHOUGHTS = _phrases("""please | too | now | as well | thanks | thank you | , in that order | in that order""")
+AFTERTHOUGHTS = _phrases("""please | too | as well | thanks | thank you | , in that order | in that order""")
 _GOING = word_set(
     """going flying visiting finding checking picking bringing taking looking searching carrying moving reaching
     photographing counting delivering inspecting heading"""

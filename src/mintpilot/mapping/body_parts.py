@@ -9,7 +9,7 @@ from dataclasses import replace
 from mintpilot.core.observation import OBJECT, PERSON, NameGuess, chance_of
 from mintpilot.core.semantic_map import MapObject
 
-LEAST_CHANCE = 0.02
+LEAST_CHANCE = 0.1
 """Of what is a person less probably than this nothing is counted."""
 MOST_CHANCE = 0.49
 """Parts together make a question, never a person."""

@@ -101,10 +101,8 @@ def fused_regions(clouds: Sequence[Cloud], given: FusionInput, prior_passable: f
 
 def fused_rooms(tracks: Sequence[Track], given: FusionInput, prior_occupied: float) -> tuple[Room, ...]:
     """One room per closed door, with the answer and the search of the previous map; rooms of old stay."""
-    least, sure = given.settings.door_sightings, given.settings.sure_door
-    doors = [
-        t for t in tracks if t.label == "door" and not t.is_segment and (len(t.frames) >= least or t.surest >= sure)
-    ]
+    sure = given.settings.sure_door
+    doors = [t for t in tracks if t.label == "door" and not t.is_segment and t.score >= sure]
     old = given.previous.rooms if given.previous is not None else ()
     for room in old:
         given.names.seen(room.id)

@@ -25,8 +25,6 @@ class Track:
     weight: float = 0.0
     doubt: float = 1.0
     """Probability that every sighting was a mistake."""
-    surest: float = 0.0
-    """Score of the surest sighting."""
     frames: set[int] = field(default_factory=set)
     votes: dict[str, Counter[str]] = field(default_factory=dict)
     best_view: tuple[int, int, int, int, int] | None = None
@@ -75,7 +73,6 @@ class Track:
         self.lo_m = self.lo_m + share * (lo - self.lo_m)
         self.hi_m = self.hi_m + share * (hi - self.hi_m)
         self.weight += weight
-        self.surest = max(self.surest, detection.score)
         if detection.frame_index not in self.frames:
             self.doubt *= 1.0 - 0.9 * min(1.0, max(0.0, detection.score))
         self.frames.add(detection.frame_index)

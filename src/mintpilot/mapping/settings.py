@@ -35,10 +35,8 @@ class MappingSettings:
     """Score from which an object that was seen once only is kept."""
     fire_margin_m: float = 0.4
     """Clearance kept from flames that were seen, metres."""
-    door_sightings: int = 4
-    """Number of frames in which a door must be seen to be kept, if never for certain."""
-    sure_door: float = 0.9
-    """Score from which one sighting of a door is certain."""
+    sure_door: float = 0.75
+    """Probability, of all sightings together, from which a door is one."""
     smoke_share: float = 0.4
     """Share of the frames that tell of a voxel which must show smoke there for it to belong to a cloud's front."""
     smoke_margin_m: float = 0.4

@@ -9,7 +9,7 @@ import numpy as np
 
 from mintpilot.core.observation import Frame, NameGuess, Segment
 from mintpilot.core.ports import Namer
-from mintpilot.perception.people import person_probability
+from mintpilot.perception.lumps import somebody_probability
 from mintpilot.perception.solid_shapes import SolidShape, solid_shape
 
 BOXLIKE = 0.8
@@ -18,6 +18,8 @@ BOX_M = (0.04, 1.3)
 """Boxes are no thinner and no longer."""
 ROUND = 0.75
 """This share of a cylinder's sides lies on it."""
+LEAST_PERSON = 0.05
+"""What is somebody less probably is nobody."""
 PANEL = 0.9
 """This share of a panel lies in one face."""
 
@@ -32,12 +34,12 @@ class GeometryNamer(Namer):
 
 
 def _named(segment: Segment) -> tuple[NameGuess, ...]:
-    person = person_probability(segment)
+    person = somebody_probability(segment)
     shape = solid_shape(segment)
     others = _by_shape(segment, shape)
-    left = 1.0 - person
+    left = 1.0 - person if person >= LEAST_PERSON else 1.0
     guesses = [NameGuess(label=g.label, probability=g.probability * left) for g in others]
-    if person > 0.02:
+    if person >= LEAST_PERSON:
         guesses.append(NameGuess(label="person", probability=person))
     return tuple(sorted(guesses, key=lambda g: (-g.probability, g.label)))
 

@@ -61,7 +61,7 @@ def with_people(segments: Sequence[Segment], least: float = 0.3) -> list[Segment
 def person_probability(segment: Segment) -> float:
     """Probability, 0 to 1, that a segment is somebody."""
     height = segment.box_m.hi_m[2] - segment.stands_on_m
-    if not any(_within(height, *sizes, HEIGHT_SOFT_M) for sizes in (LYING_HEIGHT_M, UPRIGHT_M)):
+    if not any(within(height, *sizes, HEIGHT_SOFT_M) for sizes in (LYING_HEIGHT_M, UPRIGHT_M)):
         return 0.0
     if int(segment.mask.sum()) < LEAST_PIXELS or _spread(segment.normals) < TURNED:
         return 0.0
@@ -145,7 +145,7 @@ def _axes(points: Floats) -> tuple[float, float]:
     return float(along[1] - along[0]), float(across[1] - across[0])
 
 
-def _within(value: float, low: float, high: float, soft: float) -> float:
+def within(value: float, low: float, high: float, soft: float) -> float:
     """1 inside of a range, falling to 0 over ``soft`` outside of it."""
     return float(np.clip(min((value - low) / soft + 1, (high - value) / soft + 1), 0.0, 1.0))
 
@@ -153,18 +153,18 @@ def _within(value: float, low: float, high: float, soft: float) -> float:
 def _lying(segment: Segment) -> float:
     height = segment.box_m.hi_m[2] - segment.stands_on_m
     low = segment.box_m.lo_m[2] - segment.stands_on_m
-    if low >= 0.15 or not _within(height, *LYING_HEIGHT_M, HEIGHT_SOFT_M):
+    if low >= 0.15 or not within(height, *LYING_HEIGHT_M, HEIGHT_SOFT_M):
         return 0.0
     length, width = _axes(segment.points_m[:, :2])
-    size = _within(length, *LYING_LENGTH_M, 0.25) * _within(width, *LYING_WIDTH_M, 0.1)
-    return 0.75 * size * _within(height, *LYING_HEIGHT_M, HEIGHT_SOFT_M) * float(length > 1.6 * height)
+    size = within(length, *LYING_LENGTH_M, 0.25) * within(width, *LYING_WIDTH_M, 0.1)
+    return 0.75 * size * within(height, *LYING_HEIGHT_M, HEIGHT_SOFT_M) * float(length > 1.6 * height)
 
 
 def _upright(segment: Segment) -> float:
     points, base = segment.points_m, segment.stands_on_m
     height = segment.box_m.hi_m[2] - base
     length, _ = _axes(points[:, :2])
-    size = _within(height, *UPRIGHT_M, 0.05) * _within(length, *ACROSS_M, 0.1)
+    size = within(height, *UPRIGHT_M, 0.05) * within(length, *ACROSS_M, 0.1)
     if size <= 0 or (segment.box_m.lo_m[2] - base > REACHES_M and not segment.cut):
         return 0.0
     top = float(np.percentile(points[:, 2], 99.5))

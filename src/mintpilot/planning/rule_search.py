@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -90,7 +91,7 @@ class RuledWays:
             )  # fmt: skip
             if found == _FULL:
                 row, far, after = self._pool
-                self._pool = (np.tile(row, 2), np.tile(far, 2), np.tile(after, 2))
+                self._pool = _doubled(row), _doubled(far), _doubled(after)
         self.reach, self.nearest = found, int(self._queue[4])
 
     def at(self, node: int) -> list[tuple[int, float]]:
@@ -104,6 +105,15 @@ class RuledWays:
         """Nodes (n,) of the way to a node in a set."""
         count = len(self.ground.sets)
         return _traced(self._before, self.node * count, node * count + place, count)
+
+
+_Array = TypeVar("_Array", Floats, Ints)
+
+
+def _doubled(array: _Array) -> _Array:
+    """With as much room again."""
+    more: _Array = np.concatenate([array, np.empty_like(array)])
+    return more
 
 
 @compiled(error_model="numpy")

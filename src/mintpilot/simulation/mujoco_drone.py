@@ -3,14 +3,27 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from mintpilot.core.geometry import Floats
+from mintpilot.core.geometry import Floats, Vec3
 from mintpilot.simulation.control import GRAVITY_MPS2, Controller
 from mintpilot.simulation.engine import load_mujoco
 from mintpilot.simulation.quadrotor import DRONE, HULL, Airframe
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Disturbance:
+    """What goes wrong with a simulated drone beyond its usual noise and gusts, for trials of faults."""
+
+    wind_n: Vec3 = (0.0, 0.0, 0.0)
+    """Force of a wind that does not change, newtons."""
+    rotors: tuple[float, float, float, float] = (1.0, 1.0, 1.0, 1.0)
+    """Share of the commanded thrust that each rotor gives."""
+    position_error_m: Vec3 = (0.0, 0.0, 0.0)
+    """How far off it measures itself to be: its control, its reports and its pictures alike."""
 
 
 class MujocoDrone:
@@ -37,6 +50,8 @@ class MujocoDrone:
         self.velocity_mps: Floats = data.qvel[v : v + 3]
         self._rate: Floats = data.qvel[v + 3 : v + 6]
         self._force: Floats = data.xfrc_applied[model.body(DRONE).id, :3]
+        self.rotors: Floats = np.ones(4)
+        """Share of the commanded thrust that each rotor gives."""
         self._hull = int(model.geom(HULL).id)
         data.act[:] = data.ctrl[:] = airframe.mass_kg * GRAVITY_MPS2 / 4
         self.refresh()
@@ -71,6 +86,7 @@ class MujocoDrone:
         data.ctrl[:] = self._controller.thrusts(
             self.position_m + noise[:3], self._quaternion, self.velocity_mps + noise[3:], self._rate, reference
         )
+        data.ctrl[:] *= self.rotors
         self._force[:] = gust_n
         self._mujoco.mj_step(self.model, data)
         return self._touched() if data.ncon else ""

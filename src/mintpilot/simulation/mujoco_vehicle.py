@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from mintpilot.core.errors import DeviceError
-from mintpilot.core.geometry import Floats
+from mintpilot.core.geometry import Floats, Vec3
 from mintpilot.core.inputs import MotionEnded
 from mintpilot.core.mission import Verdict
 from mintpilot.core.motion import FollowTrajectory, Land, Motion, MotionEnd, PerformAction, TakeOff
@@ -19,7 +19,7 @@ from mintpilot.core.ports import Camera, Judge, Vehicle
 from mintpilot.core.trajectory import FlightEnd, FlightLog, VehicleState
 from mintpilot.simulation.control import slewed
 from mintpilot.simulation.judge import SceneJudge
-from mintpilot.simulation.mujoco_drone import Gusts, MujocoDrone
+from mintpilot.simulation.mujoco_drone import Disturbance, Gusts, MujocoDrone
 from mintpilot.simulation.quadrotor import Airframe, add_quadrotor
 from mintpilot.simulation.reference import Reference, as_vec3, braked, check_start, descent, hover, sampled, time_steps
 from mintpilot.simulation.render import SceneRenderer
@@ -46,6 +46,9 @@ class MujocoSimulator(Vehicle, Camera, Judge):
         spec: an editable world (``mujoco.MjSpec``) of the same scene without a drone; None: built from the scene.
         camera_size: width and height of the pictures, pixels.
 
+    Attributes:
+        disturbance: what goes wrong with it from now on; whoever tries faults out sets it.
+
     Raises:
         MissingPartError: MuJoCo is not installed.
     """
@@ -69,6 +72,7 @@ class MujocoSimulator(Vehicle, Camera, Judge):
         self._refused: MotionEnded | None = None
         self._rng, self._state_rng, gust_rng = (np.random.default_rng([seed, stream]) for stream in range(3))
         self._gusts = Gusts(rules.wind_n, self._drone.step_s, gust_rng)
+        self.disturbance = Disturbance()
         self._goal_m: Floats = np.asarray(scene.start_m, float)
         self._late = any(s.appears_s > 0 for s in scene.solids)
         self._renderer: SceneRenderer | None = None
@@ -79,13 +83,18 @@ class MujocoSimulator(Vehicle, Camera, Judge):
         """The survey is over: the mission's clock starts, with a fresh battery. Call it without a survey, too."""
         self._judge.begin_mission(self._drone.time_s)
 
+    @property
+    def position_m(self) -> Vec3:
+        """Where it truly is."""
+        return as_vec3(self._drone.position_m)
+
     def state(self) -> VehicleState:
         """Where it measures itself to be."""
         drone = self._drone
         noise = self._state_rng.normal(0.0, self._rules.position_noise_m, 3)
         return VehicleState(
             time_s=drone.time_s,
-            position_m=as_vec3(drone.position_m + noise),
+            position_m=as_vec3(drone.position_m + noise + self.disturbance.position_error_m),
             velocity_mps=as_vec3(drone.velocity_mps),
             yaw_rad=drone.yaw_rad,
             endurance_left_s=self._judge.endurance_left_s(drone.time_s),
@@ -104,7 +113,7 @@ class MujocoSimulator(Vehicle, Camera, Judge):
         match motion:
             case FollowTrajectory(trajectory=trajectory):
                 try:
-                    check_start(trajectory, as_vec3(drone.position_m))
+                    check_start(trajectory, as_vec3(drone.position_m + self.disturbance.position_error_m))
                 except DeviceError as error:
                     self._refused = self._ended(motion, MotionEnd.REFUSED, reason=str(error))
                     return
@@ -174,6 +183,7 @@ class MujocoSimulator(Vehicle, Camera, Judge):
         frame: Frame = self._drawn(lambda renderer, data, time_s: renderer.capture(data, time_s))
         pose = frame.world_from_camera.copy()
         pose[:3, 3] += self._state_rng.normal(0.0, self._rules.position_noise_m, 3)
+        pose[:3, 3] += self.disturbance.position_error_m
         return replace(frame, world_from_camera=pose)
 
     def picture(self, camera: str = "chase", width: int = 960, height: int = 540) -> Any:
@@ -219,7 +229,9 @@ class MujocoSimulator(Vehicle, Camera, Judge):
         """Steps along a reference, one step a row, until its end or a failure."""
         drone, n = self._drone, len(rows)
         noise = self._rng.normal(0.0, self._rules.position_noise_m, (n, 6))
-        gusts = self._gusts.draw(n)
+        noise[:, :3] += self.disturbance.position_error_m
+        gusts = self._gusts.draw(n) + self.disturbance.wind_n
+        drone.rotors[:] = self.disturbance.rotors
         recent: list[Floats] = []
         for i in range(n):
             if self.verdict() is not None:

@@ -10,6 +10,7 @@ import traceback
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
+from importlib.util import find_spec
 from multiprocessing import get_context
 from multiprocessing.connection import Connection, wait
 from multiprocessing.context import ForkProcess
@@ -19,6 +20,7 @@ from typing import IO, Final, TypeAlias
 
 from pydantic import ValidationError
 
+from mintpilot.conformance.faults.browser import CHROMIUM
 from mintpilot.conformance.faults.drawing import Draw, drawn
 from mintpilot.conformance.faults.kinds import Adapter, FaultKind
 from mintpilot.conformance.faults.ledger import Counter
@@ -28,11 +30,32 @@ from mintpilot.conformance.faults.records_kept import kept
 from mintpilot.conformance.faults.trial import Trial, record_of
 from mintpilot.core.errors import RecordError
 
-FULL: Final[Mapping[Adapter, int]] = {Adapter.KINEMATIC: 8500, Adapter.LINK: 1300}
+FULL: Final[Mapping[Adapter, int]] = {
+    Adapter.KINEMATIC: 8500,
+    Adapter.LINK: 1300,
+    Adapter.MUJOCO: 120,
+    Adapter.DOUBLES: 20,
+    Adapter.CONSOLE: 40,
+    Adapter.VOICE: 20,
+}
 """Trials of a whole campaign."""
-LONGEST_S: Final = {Adapter.KINEMATIC: 240.0, Adapter.LINK: 120.0, Adapter.MUJOCO: 1200.0}
+LONGEST_S: Final = {
+    Adapter.KINEMATIC: 240.0,
+    Adapter.LINK: 120.0,
+    Adapter.MUJOCO: 1200.0,
+    Adapter.DOUBLES: 900.0,
+    Adapter.CONSOLE: 900.0,
+    Adapter.VOICE: 1800.0,
+}
 """A trial that is not over after this time hangs, seconds."""
 RECORDS = "trials.ndjson"
+PARTS: Final[Mapping[Adapter, tuple[tuple[str, str], ...]]] = {
+    Adapter.MUJOCO: (("mujoco", "sim"),),
+    Adapter.DOUBLES: (("mavsdk", "vehicle"), ("pymavlink", "vehicle")),
+    Adapter.CONSOLE: (("fastapi", "console"), ("playwright", "dev")),
+    Adapter.VOICE: (("moonshine_voice", "voice"), ("faster_whisper", "voice"), ("hibari", "voice")),
+}
+"""Modules that an adapter needs beside the base install, and the extras that bring them."""
 _MAY_DIE = {FaultKind.KILLED, FaultKind.MEMORY_SHORT}
 
 Key: TypeAlias = tuple[Adapter, int]
@@ -42,6 +65,16 @@ def counts(trials: int) -> dict[Adapter, int]:
     """How many trials of each adapter a campaign of that size has: in the shares of a whole one, at least one each."""
     whole = sum(FULL.values())
     return {adapter: max(1, round(n * trials / whole)) for adapter, n in FULL.items()}
+
+
+def lacking(adapter: Adapter) -> str:
+    """What this machine lacks for an adapter, and how to get it; empty: nothing."""
+    for part, extra in PARTS.get(adapter, ()):
+        if find_spec(part) is None:
+            return f"{part} is not installed: pip install 'mintpilot[{extra}]'"
+    if adapter is Adapter.CONSOLE and not CHROMIUM.exists():
+        return f"{CHROMIUM} is not there: apt-get install chromium"
+    return ""
 
 
 def planned(wanted: Mapping[Adapter, int]) -> list[Key]:
@@ -69,7 +102,9 @@ class FaultStore:
             for line in lines:
                 with suppress(ValidationError):
                     record = FaultRecord.model_validate_json(line)
-                    self.records[(record.adapter, record.number)] = record
+                    kinds = tuple(fault.kind for fault in drawn(record.adapter, record.number).faults)
+                    if record.faults == kinds:  # else other faults were drawn when it was flown
+                        self.records[(record.adapter, record.number)] = record
             self._file: IO[str] | None = None
             self._torn = bool(lines and lines[-1])
         except OSError as error:
@@ -123,10 +158,11 @@ def run_campaign(store: FaultStore, keys: Iterable[Key], *, jobs: int, heard: Ca
 
 def _warm(left: list[Key]) -> None:
     """Whatever is compiled or loaded once is so before the first fork."""
-    if any(adapter is Adapter.KINEMATIC for adapter, _ in left):
+    if any(adapter is not Adapter.LINK for adapter, _ in left):
         from mintpilot.planning.warm import warm_up
 
         warm_up()
+    if any(adapter is Adapter.KINEMATIC for adapter, _ in left):
         for number in range(1, 6):
             _alone(drawn(Adapter.KINEMATIC, 1_000_000 + number), calm=True)
 
@@ -174,7 +210,7 @@ def _begun(key: Key) -> _Flying:
     ours, theirs = context.Pipe(duplex=False)
     draw, written = drawn(*key), Counter()
     folder = Path(tempfile.mkdtemp(prefix="mintpilot-faults-"))
-    process = context.Process(target=_serve, args=(draw, folder, written, theirs), daemon=True)
+    process = context.Process(target=_serve, args=(draw, folder, written, theirs))
     process.start()
     theirs.close()
     return _Flying(key=key, draw=draw, process=process, pipe=ours, folder=folder, written=written)

@@ -7,12 +7,23 @@ from dataclasses import replace
 import numpy as np
 
 from mintpilot.conformance.faults.drawing import Draw
-from mintpilot.conformance.faults.kinds import FaultKind
-from mintpilot.conformance.faults.ledger import Ledger, Said, Shown
+from mintpilot.conformance.faults.kinds import Fault, FaultKind
+from mintpilot.conformance.faults.ledger import Ledger, Said, Shown, Told
+from mintpilot.conformance.faults.telling import Teller
 from mintpilot.core.errors import DeviceError
-from mintpilot.core.inputs import Answered, MoreTimeWanted, OperatorInput, Ordered, QuestionShown
+from mintpilot.core.inputs import (
+    Answered,
+    FactConfirmed,
+    FactTold,
+    FactUndone,
+    MoreTimeWanted,
+    OperatorInput,
+    Ordered,
+    QuestionShown,
+)
 from mintpilot.core.ports import Operator
 from mintpilot.core.query import Answer, Evidence, Order, Question, Reply, Standing, answer_for
+from mintpilot.interaction.scripted import ScriptedOperator
 
 FLOOD = 120
 """Most things that come at once."""
@@ -28,24 +39,33 @@ class FaultyOperator(Operator):
         inner: who knows the truth.
         draw: which faults come.
         ledger: is told what was shown and said.
+        during: they say something only while this fault is on; None: always.
     """
 
-    attended = False
-    hears_once = False
-
-    def __init__(self, inner: Operator, draw: Draw, ledger: Ledger) -> None:
-        self._inner, self._draw, self._ledger = inner, draw, ledger
+    def __init__(self, inner: Operator, draw: Draw, ledger: Ledger, *, during: Fault | None = None) -> None:
+        self._inner, self._draw, self._ledger, self._during = inner, draw, ledger, during
         self._rng = draw.rng
+        self._teller = Teller(draw, ledger)
         self._again: list[tuple[float, Answered]] = []
         self._ordered = False
         self._flooded = 0
+
+    @property
+    def attended(self) -> bool:
+        """As whoever really answers."""
+        return self._inner.attended
+
+    @property
+    def hears_once(self) -> bool:
+        """As whoever really answers."""
+        return self._inner.hears_once
 
     def show(self, question: Question, patience_s: float) -> None:
         """Sees the question, or its read-back."""
         now_s = self._ledger.now_s
         self._ledger.shown[question.id] = Shown(time_s=now_s, question=question, maps=len(self._ledger.maps))
         self._inner.show(question, patience_s)
-        if question.read_back is not None:
+        if question.read_back is not None and isinstance(self._inner, ScriptedOperator):
             self._confirm(question)
 
     def withdraw(self, question: str, why: str) -> None:
@@ -73,10 +93,23 @@ class FaultyOperator(Operator):
             flood = self._flood(time_s)
             self._flooded += len(flood)
             events += flood
+        events += self._teller.tells(time_s)
+        if self._during is not None and not self._during.is_on(self._ledger.now_s):
+            events = []
         for event in events:
-            if isinstance(event, Answered):
-                self._ledger.said.append(Said(time_s=self._ledger.now_s, question=event.question, answer=event.answer))
+            self._note(event)
         return tuple(events)
+
+    def _note(self, event: OperatorInput) -> None:
+        now_s = self._ledger.now_s
+        self._ledger.heard.add(getattr(event, "operator", ""))
+        if isinstance(event, Ordered) and event.order is not Order.CONTINUE:
+            self._ledger.tell(FaultKind.ORDERS, event.order.value)
+        if isinstance(event, Answered):
+            said = Said(time_s=now_s, question=event.question, answer=event.answer, operator=event.operator)
+            self._ledger.said.append(said)
+        elif isinstance(event, FactTold | FactConfirmed | FactUndone):
+            self._ledger.told.append(Told(time_s=now_s, event=event))
 
     def _on(self, kind: FaultKind) -> bool:
         fault = self._draw.first(kind)
@@ -139,8 +172,6 @@ class FaultyOperator(Operator):
             return []
         order = list(Order)[int(self._rng.integers(len(Order)))]
         self._ordered = True
-        if order is not Order.CONTINUE:
-            self._ledger.tell(FaultKind.ORDERS, order.value)
         return [Ordered(time_s=time_s, order=order, operator="faulty", text=order.value)]
 
     def _flood(self, time_s: float) -> list[OperatorInput]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import deque
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -12,6 +13,7 @@ from mintpilot.conformance.faults.drawing import Draw
 from mintpilot.conformance.faults.kinds import Fault, FaultKind
 from mintpilot.conformance.faults.ledger import Commanded, Ledger
 from mintpilot.core.errors import DeviceError
+from mintpilot.core.geometry import Vec3
 from mintpilot.core.inputs import Link, LinkChanged, MotionEnded, VehicleInput
 from mintpilot.core.motion import Motion, MotionEnd
 from mintpilot.core.ports import Vehicle
@@ -41,10 +43,11 @@ class FaultyVehicle(Vehicle):
         inner: what really flies.
         draw: which faults come.
         ledger: is told what really happens.
+        truth: where the vehicle really is; None: where it says.
     """
 
-    def __init__(self, inner: Vehicle, draw: Draw, ledger: Ledger) -> None:
-        self._inner, self._draw, self._ledger = inner, draw, ledger
+    def __init__(self, inner: Vehicle, draw: Draw, ledger: Ledger, *, truth: Callable[[], Vec3] | None = None) -> None:
+        self._inner, self._draw, self._ledger, self._truth = inner, draw, ledger, truth
         self._rng = draw.rng
         self._begun: set[FaultKind] = set()
         self._down: set[FaultKind] = set()
@@ -75,6 +78,7 @@ class FaultyVehicle(Vehicle):
                 at_m=state.position_m,
                 maps=len(self._ledger.maps),
                 said=len(self._ledger.said),
+                told=len(self._ledger.told),
             )
         )
         if self._dead:
@@ -94,7 +98,7 @@ class FaultyVehicle(Vehicle):
 
     def hold(self) -> None:
         """The end of the mission."""
-        self._ledger.held = True
+        self._ledger.held, self._ledger.over_s = True, self._ledger.now_s
         if not self._dead:
             self._inner.hold()
 
@@ -122,7 +126,7 @@ class FaultyVehicle(Vehicle):
     def _sample(self) -> None:
         true = self._inner.state()
         self._ledger.now_s = true.time_s
-        self._ledger.trace.append((true.time_s, *true.position_m))
+        self._ledger.trace.append((true.time_s, *(self._truth() if self._truth is not None else true.position_m)))
 
     def _begin_and_end(self, now_s: float) -> list[VehicleInput]:
         events: list[VehicleInput] = []

@@ -87,6 +87,9 @@ def touched(points: Floats, times_s: Floats, scene: Scene, radius_m: float, half
     lo, hi = np.asarray(scene.volume.lo_m)[:2], np.asarray(scene.volume.hi_m)[:2]
     if ((points[:, :2] < lo + radius_m) | (points[:, :2] > hi - radius_m)).any():
         return "outer wall"
+    low, high = scene.volume.lo_m[2], scene.volume.hi_m[2]
+    if ((points[:, 2] < low + half_height_m) | (points[:, 2] > high - half_height_m)).any():
+        return "floor or ceiling"
     return ""
 
 

@@ -15,7 +15,13 @@ class Adapter(StrEnum):
     LINK = "link"
     """The control of a real link against the double's autopilot, on a clock turned by hand."""
     MUJOCO = "mujoco"
-    """Physics and camera, on the sample mission: wind, motors, pictures."""
+    """Physics and camera: wind, motors, pictures, a position that is wrong."""
+    DOUBLES = "doubles"
+    """Both vehicle doubles, over MAVLink and UDP, in real time."""
+    CONSOLE = "console"
+    """The web console with a real browser, in real time."""
+    VOICE = "voice"
+    """Sound alone, with real recognisers: noise, cut and misheard words."""
 
 
 class FaultKind(StrEnum):
@@ -27,6 +33,7 @@ class FaultKind(StrEnum):
     POSE_JUMPS = "pose-jumps"
     POSITION_LOST = "position-lost"
     MOTOR_LOST = "motor-lost"
+    MOTOR_WEAK = "motor-weak"
     WIND = "wind"
     LINK_LOST = "link-lost"
     PILOT = "pilot"
@@ -35,14 +42,25 @@ class FaultKind(StrEnum):
     LATE = "late"
     DOUBLED = "doubled"
     REORDERED = "reordered"
+    CORRUPT = "corrupt"
     BATTERY = "battery"
     OPERATOR_WRONG = "operator-wrong"
     OPERATOR_SILENT = "operator-silent"
     OPERATOR_GONE = "operator-gone"
     CONTRADICTORY = "contradictory"
+    SECOND = "second"
+    """Somebody else answers too, on another link, and says the opposite."""
+    TOLD = "told"
+    """Facts are told, drawn, confirmed and taken back in any order."""
     FLOODING = "flooding"
     ORDERS = "orders"
     MISHEARD = "misheard"
+    NOISE = "noise"
+    TRUNCATED = "truncated"
+    """Sound that is cut off."""
+    CLIENT_SLOW = "client-slow"
+    TAB_KILLED = "tab-killed"
+    WRONG_TOKEN = "wrong-token"
     MODEL_HOSTILE = "model-hostile"
     THINKING_LATE = "thinking-late"
     THINKING_FAILS = "thinking-fails"
@@ -71,7 +89,8 @@ OVER_S: Final = 420.0
 
 _RESTS = Rule(state="at rest", within_s=AT_REST_S)
 _HANDS_OFF = Rule(state="nothing is commanded any more, and the mission is over", within_s=1.0)
-_GOES_ON = Rule(state="the mission is over, at rest", within_s=OVER_S)
+ENDS: Final = Rule(state="the mission is over, at rest", within_s=OVER_S)
+"""What must follow a fault that the mission is not told of."""
 _READABLE = Rule(state="all that was written is readable", within_s=0.0)
 
 RULES: Final[dict[FaultKind, Rule]] = {
@@ -90,7 +109,7 @@ RULES: Final[dict[FaultKind, Rule]] = {
 
 def rule_of(kind: FaultKind) -> Rule:
     """What must follow a fault of that kind."""
-    return RULES.get(kind, _GOES_ON)
+    return RULES.get(kind, ENDS)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -9,9 +9,14 @@ import numpy as np
 
 from mintpilot.conformance.faults.kinds import FaultKind
 from mintpilot.core.geometry import Floats, Vec3
+from mintpilot.core.inputs import FactConfirmed, FactTold, FactUndone
 from mintpilot.core.motion import Motion
 from mintpilot.core.query import Answer, Question
 from mintpilot.core.semantic_map import SemanticMap
+from mintpilot.core.told import ToldFact
+
+INTRUDER = "intruder"
+"""Whoever calls themselves so has no right to be heard."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -26,6 +31,8 @@ class Commanded:
     """How many maps had been handed over."""
     said: int | None = None
     """How many answers had been: of one moment only those that came before count. None: all until then."""
+    told: int | None = None
+    """The same of facts that were told, confirmed or taken back."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -35,6 +42,16 @@ class Said:
     time_s: float
     question: str
     answer: Answer
+    operator: str = ""
+    """Who gave it."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Told:
+    """Something that was told, confirmed or taken back."""
+
+    time_s: float
+    event: FactTold | FactConfirmed | FactUndone
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -85,6 +102,23 @@ class Ledger:
     withdrawn: dict[str, float] = field(default_factory=dict)
     """When questions were withdrawn first."""
     said: list[Said] = field(default_factory=list)
+    told: list[Told] = field(default_factory=list)
+    facts: dict[str, ToldFact] = field(default_factory=dict)
+    """What the mission made of what was told: by id, as it was said first. The monitors go by ids and words alone."""
+    spoken: list[tuple[float, str]] = field(default_factory=list)
+    """What truly sounded at a microphone, and when."""
+    heard: set[str] = field(default_factory=set)
+    """Everybody of whom something was heard."""
+    beyond_s: float = np.inf
+    """From when on physics leaves no control that could keep the vehicle in the air."""
+    simulated: bool = True
+    """Whether a simulator tells the mission what was touched; a real vehicle's cannot know."""
+    crashed: str = ""
+    """What the double at the other end of a link says that it flew into; empty: nothing."""
+    left_flying: str = ""
+    """How it flies on long after the mission, in nobody's care; empty: it does not."""
+    over_s: float = np.inf
+    """When the vehicle was told to hold at the end."""
     held: bool = False
     """Whether the vehicle was told to hold at the end."""
     now_s: float = 0.0
@@ -92,6 +126,12 @@ class Ledger:
     def tell(self, kind: FaultKind, what: str = "") -> None:
         """The mission is told of a fault now."""
         self.known.append((self.now_s, kind, what))
+
+    def at(self, time_s: float) -> Vec3:
+        """Where the vehicle truly was."""
+        row = int(np.searchsorted([at_s for at_s, *_ in self.trace], time_s))
+        _, x, y, z = self.trace[min(row, len(self.trace) - 1)]
+        return (x, y, z)
 
     def array(self) -> Floats:
         """The trace (n, 4)."""

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
 from mintpilot.assembly.worlds import World
-from mintpilot.conformance.faults import geometry
-from mintpilot.conformance.faults.kinds import FaultKind, rule_of
-from mintpilot.conformance.faults.ledger import Commanded, Ledger, Said
-from mintpilot.core.geometry import Bools, Floats
+from mintpilot.conformance.faults import geometry, told_monitor
+from mintpilot.conformance.faults.kinds import ENDS, Fault, FaultKind, rule_of
+from mintpilot.conformance.faults.ledger import INTRUDER, Commanded, Ledger, Said
+from mintpilot.core.geometry import Bools, Floats, Ints
 from mintpilot.core.mission import Outcome, Verdict
 from mintpilot.core.motion import FollowTrajectory, Land
 from mintpilot.core.query import Query, Standing
@@ -20,10 +20,17 @@ from mintpilot.core.semantic_map import Cell, Knowledge, SemanticMap
 ROUNDING_M = 1e-6
 TRACK_M = 0.2
 """Whoever goes back the way it came is nearer than this to where it has been."""
+PAD_M = 0.7
+"""So near to its start it may land: whoever put it down there vouches for the ground."""
 WITHIN_M = 0.03
 """Touches that differ by less than this are the same for both geometries."""
 STILL_MPS = 0.1
+STARVED_S = 0.5
+"""The mission is looked at ten times as often: what is longer is the machine's delay."""
 PASSABLE = "passable"
+VOICE = "voice"
+CONFIRMED_S = 30.0
+"""Whoever confirms by voice says so at most this long before it counts."""
 _FAILURES = (Outcome.COLLISION, Outcome.TOXIC_SMOKE, Outcome.LEFT_VOLUME, Outcome.ENDURANCE)
 
 
@@ -42,15 +49,35 @@ def judged(ledger: Ledger, world: World, verdict: Verdict | None) -> Iterator[Br
     yield from moved_safely(ledger, world)
     yield from commanded_safely(ledger, world)
     yield from became_safe(ledger, verdict)
+    yield from let_nobody_in(ledger)
+    if ledger.crashed and ledger.beyond_s == np.inf:
+        yield Breach(rule="touch", what=ledger.crashed)
+    if ledger.left_flying:
+        yield Breach(rule="left flying", what=ledger.left_flying)
     if verdict is not None:
         yield from told_the_truth(ledger, world, verdict)
         if not ledger.held:
             yield Breach(rule="left flying", what="the vehicle was not told to hold at the end")
 
 
-def touches(ledger: Ledger, world: World, *, more_m: float = 0.0) -> str:
-    """What was touched, with a hull that is larger by so much."""
+def let_nobody_in(ledger: Ledger) -> Iterator[Breach]:
+    """Nobody is heard who has no right to be."""
+    for name in sorted(ledger.heard):
+        if INTRUDER in name:
+            yield Breach(rule="let in", what=f"'{name}' was heard")
+    for said in ledger.said:
+        if said.operator == VOICE and said.answer.standing is Standing.CONFIRMED:
+            before = [words for at_s, words in ledger.spoken if said.time_s - CONFIRMED_S <= at_s <= said.time_s]
+            if not any("confirm" in words for words in before):
+                yield Breach(rule="let in", what=f"at {said.time_s:.2f} s a confirmation was heard that nobody gave")
+
+
+def touches(ledger: Ledger, world: World, *, more_m: float = 0.0, until_s: float = np.inf) -> str:
+    """What was touched until then, with a hull that is larger by so much."""
     trace = ledger.array()
+    trace = trace[trace[:, 0] <= until_s]
+    if not len(trace):
+        return ""
     points = geometry.densely(trace[:, 1:])
     times = np.interp(np.linspace(0, 1, len(points)), np.linspace(0, 1, len(trace)), trace[:, 0])
     rules = world.rules
@@ -63,10 +90,11 @@ def moved_safely(ledger: Ledger, world: World) -> Iterator[Breach]:
     Once the position is not known the mission cannot say where on the map it is: from then on only touches count here,
     and landings are judged by where it was told to be (`commanded_safely`).
     """
-    what = touches(ledger, world)
+    what = touches(ledger, world, until_s=ledger.beyond_s)
     if what:
         yield Breach(rule="touch", what=f"it touched '{what}'")
     trace = ledger.array()
+    trace = trace[trace[:, 0] <= ledger.beyond_s]
     late_s = rule_of(FaultKind.DEPTH_WRONG).within_s
     if len(trace) < 3 or not ledger.maps:
         return
@@ -79,11 +107,11 @@ def moved_safely(ledger: Ledger, world: World) -> Iterator[Breach]:
         rows = np.flatnonzero((which == number) & (speed > 1e-4) & ~_descending(ledger, trace[:, 0]))
         if not len(rows):
             continue
-        map = ledger.maps[number][1]
-        barred = ~(map.cells == Cell.FREE)
-        inside = geometry.gap_to_cells(trace[rows, 1:], barred, map.frame, map.frame.resolution_m) <= 0
+        inside = _not_free(trace[rows, 1:], ledger.maps[number][1])
         for row in rows[inside]:
-            if not _been_there(trace[row, 1:][None], trace[: max(row - 40, 1), 1:]).all():
+            since = ledger.maps[number + 1 : int(np.searchsorted(times, trace[row, 0], side="right"))]
+            still = all(_not_free(trace[row, 1:][None], map).all() for _, map in since)
+            if still and not _been_there(trace[row, 1:][None], trace[: max(row - 40, 1), 1:]).all():
                 yield Breach(
                     rule="flown where the map says no",
                     what=f"at {trace[row, 0]:.2f} s it flew on through a cell that was not free for {late_s:g} s",
@@ -104,6 +132,7 @@ def commanded_safely(ledger: Ledger, world: World) -> Iterator[Breach]:
                 yield Breach(rule="flown without a map", what=f"at {order.time_s:.2f} s")
                 continue
             yield from _flight_is_known(order, map, ledger, world)
+            yield from _flight_is_free(order, ledger, world)
         elif isinstance(order.motion, Land) and map is not None:
             yield from _landing_is_known(order, map, ledger, world)
 
@@ -112,14 +141,16 @@ def _flight_is_known(order: Commanded, map: SemanticMap, ledger: Ledger, world: 
     assert isinstance(order.motion, FollowTrajectory)
     points = geometry.densely(np.asarray(order.motion.trajectory.position_m, float))
     radius = world.mission.limits.radius_m
+    flown = ledger.array()
+    flown = flown[flown[:, 0] <= order.time_s][:, 1:]
+    drawn = told_monitor.drawn_over(points, order, ledger)
+    if drawn.any() and not _been_there(points[drawn], flown).all():
+        x, y, _ = points[drawn][0]
+        yield Breach(rule="flown where drawn", what=f"commanded at {order.time_s:.2f} s, over ({x:.2f}, {y:.2f})")
     gaps = geometry.gap_to_cells(points, barred_cells(map, order, ledger, world), map.frame, radius)
     wanted = min(radius, float(gaps[0])) - ROUNDING_M if gaps[0] > 0 else radius - ROUNDING_M
     short = gaps < wanted
-    if not short.any():
-        return
-    flown = ledger.array()
-    flown = flown[flown[:, 0] <= order.time_s][:, 1:]
-    if _been_there(points[short], flown).all():
+    if not short.any() or _been_there(points[short], flown).all():
         return
     at = points[short][0]
     yield Breach(
@@ -129,8 +160,20 @@ def _flight_is_known(order: Commanded, map: SemanticMap, ledger: Ledger, world: 
     )
 
 
+def _flight_is_free(order: Commanded, ledger: Ledger, world: World) -> Iterator[Breach]:
+    """By the truth: a commanded flight touches nothing, whatever the map says, unless it is broken off in time."""
+    assert isinstance(order.motion, FollowTrajectory)
+    off_m = np.asarray(ledger.at(order.time_s)) - np.asarray(order.at_m)
+    points = geometry.densely(np.asarray(order.motion.trajectory.position_m, float)) + off_m
+    rules, times = world.rules, np.full(len(points), order.time_s)
+    what = geometry.touched(points, times, world.scene, rules.radius_m, rules.half_height_m)
+    if what and order.time_s < ledger.beyond_s:
+        yield Breach(rule="commanded into something", what=f"at {order.time_s:.2f} s into '{what}'")
+
+
 def _landing_is_known(order: Commanded, map: SemanticMap, ledger: Ledger, world: World) -> Iterator[Breach]:
-    if map.frame.is_flat:
+    at_start_m = np.linalg.norm(np.asarray(order.at_m[:2]) - world.mission.start_m[:2])
+    if map.frame.is_flat or at_start_m <= PAD_M:
         return
     barred = barred_cells(map, order, ledger, world)
     nz, ny, nx = barred.shape
@@ -144,6 +187,12 @@ def _landing_is_known(order: Commanded, map: SemanticMap, ledger: Ledger, world:
     last = int(ground[0]) if len(ground) else len(column)
     if block[:last].any():
         yield Breach(rule="landed where not known free", what=f"at {order.time_s:.2f} s, at ({x}, {y}) cells")
+
+
+def _not_free(points: Floats, map: SemanticMap) -> Bools:
+    """Which of the points (n, 3) lie in cells that are not free."""
+    gaps = geometry.gap_to_cells(points, map.cells != Cell.FREE, map.frame, map.frame.resolution_m)
+    return np.asarray(gaps <= 0)
 
 
 def _descending(ledger: Ledger, times_s: Floats) -> Bools:
@@ -167,22 +216,40 @@ def barred_cells(map: SemanticMap, order: Commanded, ledger: Ledger, world: Worl
     barred = np.array(map.cells != Cell.FREE)
     given = {region.id for region in world.map.regions if region.passable is Knowledge.YES}
     for region in map.regions:
-        if region.id not in given and not allowed(
-            region.id, region.cells, order.time_s, ledger, world, heard=order.said
+        if told_monitor.blocked(region.id, order, ledger) or not (
+            region.id in given
+            or allowed(region.id, region.cells, order.time_s, ledger, world, heard=order.said)
+            or _told_passable(region.id, region.cells, order, ledger, world)
         ):
             barred.ravel()[region.cells] = True
     return barred
 
 
-def allowed(
-    region: str, cells: np.ndarray, time_s: float, ledger: Ledger, world: World, *, heard: int | None = None
-) -> bool:
+def _told_passable(region: str, cells: Ints, order: Commanded, ledger: Ledger, world: World) -> bool:
+    """Whether a fact that was told and confirmed opens these cells: the outline of the map at that time covers them."""
+    for told_s in told_monitor.opened(region, order, ledger, world.mission.asking.answer_valid_s):
+        shown = [map for at_s, map in ledger.maps if at_s <= told_s][-1:]
+        outlines = [r.cells for map in shown for r in map.regions if r.id == region]
+        if outlines and _covers(outlines[0], cells, world):
+            return True
+    return False
+
+
+def _covers(outline: Ints, cells: Ints, world: World) -> bool:
+    flags = np.zeros(world.map.frame.shape, bool)
+    flags.ravel()[outline] = True
+    return bool(geometry.grown(flags).ravel()[cells].all())
+
+
+def allowed(region: str, cells: Ints, time_s: float, ledger: Ledger, world: World, *, heard: int | None = None) -> bool:
     """Whether somebody's explicit yes for a region counts at that time, and covers these cells."""
     gap, covered, since_s = f"obstacle:{region}", None, -np.inf
     for said in ledger.said[:heard]:
         shown = ledger.shown.get(said.question)
         if said.time_s > time_s or shown is None or gap not in shown.question.query.gap_ids:
             continue
+        if said.operator == VOICE and said.answer.standing is not Standing.CONFIRMED and said.answer.part == 0:
+            continue  # a spoken yes is read back
         open_ = ledger.withdrawn.get(said.question, np.inf) >= said.time_s
         if open_ and said.answer.standing is not Standing.UNCONFIRMED and _says(shown.question.query, said, gap):
             outlines = [r.cells for _, m in ledger.maps[: shown.maps][-1:] for r in m.regions if r.id == region]
@@ -191,9 +258,7 @@ def allowed(
             covered = None
     if covered is None or time_s >= since_s + world.mission.asking.answer_valid_s:
         return False
-    flags = np.zeros(world.map.frame.shape, bool)
-    flags.ravel()[covered] = True
-    return bool(geometry.grown(flags).ravel()[cells].all())
+    return _covers(covered, cells, world)
 
 
 def _says(query: Query, said: Said, gap: str) -> bool:
@@ -214,14 +279,32 @@ def _says(query: Query, said: Said, gap: str) -> bool:
 def became_safe(ledger: Ledger, verdict: Verdict | None) -> Iterator[Breach]:
     """After each fault that the mission was told of the safe state is there in time."""
     for at_s, kind, what in ledger.known:
-        rule, took_s = rule_of(kind), safe_after(ledger, at_s)
+        rule, took_s = rule_of(kind), safe_after(ledger, at_s) - starved_s(ledger, at_s)
         if kind in (FaultKind.PILOT, FaultKind.LINK_LOST, FaultKind.MOTOR_LOST):
-            took_s = float(ledger.trace[-1][0]) - at_s
+            took_s = min(ledger.over_s, float(ledger.trace[-1][0])) - at_s - starved_s(ledger, at_s)
         if took_s > rule.within_s and verdict is not None:
             yield Breach(
                 rule="not safe in time",
                 what=f"{kind.value} {what} at {at_s:.2f} s: {rule.state} after {took_s:.1f} s, not {rule.within_s:g} s",
             )
+
+
+def ended_in_time(ledger: Ledger, faults: Iterable[Fault]) -> Iterator[Breach]:
+    """A mission that a fault leaves to itself is over in time, unless somebody let it hold."""
+    end_s = min(ledger.over_s, ledger.now_s)
+    if any(kind is FaultKind.ORDERS for _, kind, _ in ledger.known):
+        return
+    for fault in faults:
+        took_s = end_s - fault.at_s - starved_s(ledger, fault.at_s)
+        if rule_of(fault.kind) is ENDS and took_s > ENDS.within_s:
+            yield Breach(rule="not safe in time", what=f"{fault.kind.value}: over after {took_s:.0f} s")
+
+
+def starved_s(ledger: Ledger, at_s: float) -> float:
+    """In real time: how long the machine did not let the mission run after ``at_s``, seconds."""
+    times = ledger.array()[:, 0]
+    gaps_s = np.diff(times[(times >= at_s - STARVED_S) & (times <= ledger.over_s)])
+    return float(gaps_s[gaps_s > STARVED_S].sum())
 
 
 def safe_after(ledger: Ledger, at_s: float) -> float:
@@ -240,9 +323,11 @@ def told_the_truth(ledger: Ledger, world: World, verdict: Verdict) -> Iterator[B
     """The verdict says what the monitors saw."""
     outcome, scene, trace = verdict.outcome, world.scene, ledger.array()
     lie = f"it is called {outcome.value}: {verdict.reason}"
-    if touches(ledger, world) and outcome not in _FAILURES:
+    claims = outcome not in _FAILURES if ledger.simulated else outcome in (Outcome.SUCCESS, Outcome.PARTIAL)
+    if claims and touches(ledger, world):
         yield Breach(rule="verdict", what=f"it touched something; {lie}")
-    if outcome is Outcome.COLLISION and not touches(ledger, world, more_m=WITHIN_M):
+    tilted_m = world.rules.radius_m if ledger.beyond_s < np.inf else WITHIN_M
+    if outcome is Outcome.COLLISION and not touches(ledger, world, more_m=tilted_m):
         yield Breach(rule="verdict", what=f"it touched nothing; {lie}")
     points, rules = geometry.densely(trace[:, 1:]), world.rules
     smoked = any(

@@ -6,7 +6,8 @@ from collections import Counter
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
-from mintpilot.conformance.faults.kinds import FaultKind, rule_of
+from mintpilot.conformance.faults.drawing import drawn
+from mintpilot.conformance.faults.kinds import ENDS, FaultKind, rule_of
 from mintpilot.conformance.faults.records import FaultRecord
 
 
@@ -36,7 +37,7 @@ class FaultRow:
     """The safe state."""
     within_s: float
     told: int
-    """How often a mission was told of it."""
+    """How often a mission was told of it; of one that it is not told of, how often it began."""
     longest_s: float | None
     """Longest time to the safe state; None: no mission was told of it."""
 
@@ -56,14 +57,26 @@ def adapter_rows(records: Iterable[FaultRecord]) -> Iterator[AdapterRow]:
         )
 
 
+def _ended_s(record: FaultRecord, kind: FaultKind) -> float | None:
+    """From when a fault began to the end of the mission, seconds; None: it never began, or somebody let it hold."""
+    fault = drawn(record.adapter, record.number).first(kind)
+    ordered = any(told is FaultKind.ORDERS for told, _ in record.safe_s)
+    if fault is None or ordered or record.mission_s <= fault.at_s:
+        return None
+    return record.mission_s - fault.at_s
+
+
 def fault_rows(records: Iterable[FaultRecord]) -> Iterator[FaultRow]:
     """One row a fault that was drawn, in the order of `FaultKind`."""
     every = list(records)
     for kind in FaultKind:
         mine = [record for record in every if kind in record.faults]
         if mine:
-            took = [seconds for record in mine for told, seconds in record.safe_s if told is kind]
             rule = rule_of(kind)
+            if rule is ENDS:
+                took = [seconds for record in mine if (seconds := _ended_s(record, kind)) is not None]
+            else:
+                took = [seconds for record in mine for told, seconds in record.safe_s if told is kind]
             yield FaultRow(
                 fault=kind.value,
                 trials=len(mine),

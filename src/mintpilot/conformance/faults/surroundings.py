@@ -52,10 +52,11 @@ class CountingRecorder(Recorder):
         inner: the run folder.
         written: set to the number of events that ought to be in the log; it outlives the process.
         draw: which faults come.
+        ledger: is told of the facts that the mission knows of.
     """
 
-    def __init__(self, inner: Recorder, written: Counter, draw: Draw) -> None:
-        self._inner, self._written, self._draw = inner, written, draw
+    def __init__(self, inner: Recorder, written: Counter, draw: Draw, ledger: Ledger) -> None:
+        self._inner, self._written, self._draw, self._ledger = inner, written, draw, ledger
         self._events = self._all = 0
         self.last: Event | None = None
 
@@ -63,6 +64,9 @@ class CountingRecorder(Recorder):
         """Hands it on."""
         self._inner.record(event)
         self.last = event
+        if isinstance(event, FactsChanged):
+            for known in event.told:
+                self._ledger.facts.setdefault(known.id, known)
         self._all += 1
         if not isinstance(event, UNWRITTEN):
             self._events += 1

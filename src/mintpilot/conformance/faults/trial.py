@@ -11,33 +11,31 @@ from pathlib import Path
 
 import numpy as np
 
-from mintpilot.assembly.components import Choices, VehicleChoice, components_for, scripted_operator
+from mintpilot.assembly.components import components_for
 from mintpilot.assembly.talk import Talk
 from mintpilot.assembly.worlds import World, build_world
 from mintpilot.conformance.faults import surroundings
+from mintpilot.conformance.faults.adapters import stage_for
 from mintpilot.conformance.faults.drawing import Draw
-from mintpilot.conformance.faults.faulty_operator import FaultyOperator, hostile_words
-from mintpilot.conformance.faults.faulty_source import FaultySource
-from mintpilot.conformance.faults.faulty_vehicle import FaultyVehicle
-from mintpilot.conformance.faults.kinds import Adapter, FaultKind
+from mintpilot.conformance.faults.faulty_operator import hostile_words
+from mintpilot.conformance.faults.kinds import FaultKind
 from mintpilot.conformance.faults.ledger import Counter, Ledger
-from mintpilot.conformance.faults.monitors import Breach, judged, safe_after
+from mintpilot.conformance.faults.monitors import Breach, ended_in_time, judged, safe_after
 from mintpilot.conformance.faults.records import BreachRecord, FaultRecord
 from mintpilot.conformance.faults.records_kept import kept, replays
 from mintpilot.conformance.sample import sample_world
 from mintpilot.core.mission import Verdict
 from mintpilot.mission.components import MissionComponents
 from mintpilot.mission.loop import fly_mission
-from mintpilot.mission_file.schema import MissionFile, OperatorSpec
+from mintpilot.mission_file.schema import MissionFile
 from mintpilot.mission_file.schema_world import ScenarioWorld
 from mintpilot.models.doubles import FunctionModel
+from mintpilot.recording.recorders import TeeRecorder
 from mintpilot.recording.run_folder import RunFolder
 from mintpilot.simulation.scenarios import make_scenario
 
 REPLAYED = 20
 """Every so many-th trial is thought through again from its record."""
-THINKS = "1..8"
-"""How long the person thinks, seconds."""
 
 
 @dataclass(slots=True)
@@ -67,7 +65,7 @@ class Trial:
 
     def _judged(self, world: World, ledger: Ledger, verdict: Verdict | None, raised: str, refused: int) -> FaultRecord:
         run = self.folder / "run"
-        breaches = list(judged(ledger, world, verdict))
+        breaches = [*judged(ledger, world, verdict), *ended_in_time(ledger, self.draw.faults)]
         if raised and raised != "MemoryError":
             breaches.append(Breach(rule="raised", what=raised))
         if raised and not ledger.held:
@@ -90,27 +88,26 @@ class Trial:
         self, world: World, ledger: Ledger, run: Path, disk: surroundings.Disk
     ) -> Iterator[MissionComponents]:
         draw = self.draw
-        operator = FaultyOperator(scripted_operator(world, OperatorSpec(latency_s=THINKS)), draw, ledger)
         hostile = draw.first(FaultKind.MODEL_HOSTILE)
         rng = np.random.default_rng([draw.number, 5])
         talk = Talk() if hostile is None else Talk(model=FunctionModel(lambda _: hostile_words(rng)), name="hostile")
-        physics = draw.adapter is Adapter.MUJOCO
-        choices = Choices(vehicle=VehicleChoice.MUJOCO if physics else VehicleChoice.KINEMATIC)
         with ExitStack() as stack:
             stack.enter_context(disk.failing())
             folder = RunFolder(run, config={}, clock=surroundings.wall_clock(draw))
             if draw.number % REPLAYED == 0:
                 stack.callback(folder.close)  # with its report, which takes a second
-            recorder = surroundings.CountingRecorder(folder, self.written, draw)
-            parts = components_for(world, choices, operators=(operator,), recorder=recorder, talk=talk, digests=True)
-            made = stack.enter_context(parts)
+            stage = stack.enter_context(stage_for(draw.adapter)(draw, world, ledger, talk))
+            counted = surroundings.CountingRecorder(folder, self.written, draw, ledger)
+            recorder = TeeRecorder(counted, *stage.recorders)
+            parts = components_for(
+                world, stage.choices, operators=stage.operators, recorder=recorder, talk=talk, digests=True
+            )
+            made = stage.beset(stack.enter_context(parts))
             seeing = any(f.kind in (FaultKind.CAMERA_GONE, FaultKind.CAMERA_FROZEN, FaultKind.DEPTH_WRONG)
                          for f in draw.faults)  # fmt: skip
             worker = made.worker
             yield replace(
                 made,
-                vehicle=FaultyVehicle(made.vehicle, draw, ledger),
-                map_source=FaultySource(made.map_source, draw, ledger),
                 worker=lambda parts: surroundings.FaultyWorker(worker(parts), draw, ledger),
                 watch_map=made.watch_map or seeing,
             )

@@ -48,6 +48,10 @@ class _Room:
                 at = door.at_m + gap
             self.on_wall(wall, (at, 0.0, low), (end, out, high), colour)
 
+    def at_door(self, wall: int, at: float, half: float) -> bool:
+        """Whether something so wide would reach into a door or its frame."""
+        return any(d.wall == wall and abs(d.at_m - at) < d.width_m / 2 + 0.09 + half for d in self._doors)
+
     def free(self, width: float) -> tuple[int, float] | None:
         """A wall and where along it something so wide may hang; it counts as taken."""
         for _ in range(20):
@@ -82,6 +86,21 @@ def _dado(room: _Room) -> None:
     colour = room.colour()
     room.strip(0.0, 1.1, 0.003, colour)
     room.strip(1.1, 1.16, 0.02, (0.75 * colour[0], 0.75 * colour[1], 0.75 * colour[2]))
+
+
+def _panelling(room: _Room) -> None:
+    """The whole of the walls in framed boards, about as wide as doors, with rails below, at the hips and above."""
+    wood = room.colour()
+    darker: Rgb = (0.8 * wood[0], 0.8 * wood[1], 0.8 * wood[2])
+    wide = float(room.rng.uniform(0.55, 1.0))
+    for low, high in ((0.0, 0.14), (0.86, 0.96), (2.25, 2.40)):
+        room.strip(low, high, 0.025, darker)
+    room.strip(0.14, 2.25, 0.004, wood)
+    for wall in range(4):
+        end = room.size[0] if wall < 2 else room.size[1]
+        for at in np.arange(wide, end - 0.1, wide):
+            if not room.at_door(wall, at, 0.06):
+                room.on_wall(wall, (at - 0.05, 0.0, 0.14), (at + 0.05, 0.025, 2.25), darker)
 
 
 def _handrail(room: _Room) -> None:
@@ -170,6 +189,7 @@ MAKERS: MappingProxyType[str, Callable[[_Room], None]] = MappingProxyType(
         "carpet": _carpet,
         "skirting": _skirting,
         "dado": _dado,
+        "panelling": _panelling,
         "handrail": _handrail,
         "pictures": _pictures,
         "window": _window,
