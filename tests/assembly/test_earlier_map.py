@@ -117,7 +117,7 @@ def test_it_must_fit_the_place_and_a_camera_must_look_again(run: Path, tmp_path:
     ("age_s", "words"), [(5, "less than a minute"), (61, "1 minute"), (7300, "2 hours"), (9e5, "10 days")]
 )
 def test_ages_are_said_as_people_do(age_s: float, words: str) -> None:
-    assert in_words(age_s) == words
+    assert str(in_words(age_s)) == words
 
 
 @pytest.mark.slow

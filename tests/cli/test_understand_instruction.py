@@ -20,7 +20,7 @@ def printed(capsys: pytest.CaptureFixture[str], *words: str, code: int = 0) -> s
 def test_the_steps_are_printed_and_what_is_stayed_out_of(capsys: pytest.CaptureFixture[str]) -> None:
     out = printed(capsys, "Find the nurse and bring her the cup, and avoid the smoke")
     assert out.splitlines() == [
-        "1 go to the nurse", "2 pick up the cup", "3 bring the cup to the nurse", "keep out of: smoke",
+        "1 go to the nurse", "2 pick up the cup", "3 bring the cup to the nurse", "rule: never enter the smoke",
     ]  # fmt: skip
 
 

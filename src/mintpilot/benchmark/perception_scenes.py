@@ -60,6 +60,16 @@ def seen_rooms(style: Style, seeds: Sequence[int], perception: Perception) -> It
 
 def pictures_of(room: FurnishedRoom, seed: int) -> tuple[list[Frame], list[bool]]:
     """The pictures of a room, and whether each thing in it is seen well in one of them."""
+    frames, seen = [], [False] * len(room.shown)
+    for frame, owner in looks_at(room, seed):
+        frames.append(frame)
+        for number, one in enumerate(room.shown):
+            seen[number] = seen[number] or _is_whole(owner == number, one)
+    return frames, seen
+
+
+def looks_at(room: FurnishedRoom, seed: int) -> Iterator[tuple[Frame, Any]]:
+    """Each picture of a room, with the number of the thing that each pixel (h, w) shows; -1 for the room itself."""
     mujoco = load_mujoco()
     model = world_of(room, mujoco).compile()
     data = mujoco.MjData(model)
@@ -67,14 +77,10 @@ def pictures_of(room: FurnishedRoom, seed: int) -> tuple[list[Frame], list[bool]
     volume = Box(lo_m=(0.0, 0.0, 0.0), hi_m=(*room.size_m, HEIGHT_M))
     scene = Scene(name="furnished", volume=volume, start_m=volume.centre_m)
     owner = _owners(model)
-    frames, seen = [], [False] * len(room.shown)
     with SceneRenderer(model, scene, seed=seed) as renderer:
         for i in range(len(room.looks)):
-            frames.append(renderer.capture(data, float(i), f"look-{i}"))
-            shown = owner[renderer.geoms_seen(data, f"look-{i}")]
-            for number, one in enumerate(room.shown):
-                seen[number] = seen[number] or _is_whole(shown == number, one)
-    return frames, seen
+            frame = renderer.capture(data, float(i), f"look-{i}")
+            yield frame, owner[renderer.geoms_seen(data, f"look-{i}")]
 
 
 def _owners(model: Any) -> Any:

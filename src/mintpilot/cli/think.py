@@ -7,7 +7,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from mintpilot.cli.exits import ExitCode
-from mintpilot.core.message import message
+from mintpilot.core.gap import ABSENT, BLOCKED, PASSABLE, PRESENT
+from mintpilot.core.message import message, verbatim
 from mintpilot.wording.speech import Speech
 
 if TYPE_CHECKING:
@@ -92,10 +93,23 @@ def lines_of(report: DeliberationReport) -> Iterator[str]:
     yield speech(message("Thought for {seconds:.2f} s.", seconds=report.seconds))
 
 
+_VALUES = {
+    PASSABLE: message("passable"),
+    BLOCKED: message("blocked"),
+    PRESENT: message("present"),
+    ABSENT: message("absent"),
+}
+"""What a gap's values are called; names of things stay as they are."""
+
+
 def _gap_lines(gap: GapReport, speech: Speech) -> Iterator[str]:
     yield ""
     yield f"  {gap.description} ({speech.label('critical') if gap.critical else speech.label('irrelevant')})"
-    yield "    " + ", ".join(f"{value} {prior:.0%}" for value, prior in gap.values.items())
+    shares = [
+        message("{value} {prior:.0%}", value=_VALUES.get(value, verbatim(value)), prior=prior)
+        for value, prior in gap.values.items()
+    ]
+    yield "    " + ", ".join(map(speech, shares))
     yield f"    {gap.why}"
 
 

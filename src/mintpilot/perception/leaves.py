@@ -33,7 +33,7 @@ def find_leaves(view: View, scene: Scene, index: int, settings: PerceptionSettin
         if frames is None:
             continue
         chances = door_probabilities(frames)
-        for i in _apart(frames, chances):
+        for i in apart(frames, chances):
             leaf = _as_leaf(view, scene, wall, frames, i, float(chances[i]), index, settings)
             if leaf is not None and all(math.dist(leaf.position_m, other.position_m) > NEAR_M for other in found):
                 found.append(leaf)
@@ -47,7 +47,7 @@ def door_probabilities(frames: DoorFrames) -> Floats:
     return chances
 
 
-def _apart(frames: DoorFrames, chances: Floats) -> list[int]:
+def apart(frames: DoorFrames, chances: Floats) -> list[int]:
     """The likeliest frames that do not share the same part of the wall."""
     kept: list[int] = []
     for i in np.argsort(-chances, kind="stable"):

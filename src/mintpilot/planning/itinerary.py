@@ -145,7 +145,7 @@ def itinerary_of(problem: PlanningProblem, terrain: Terrain) -> Itinerary:
             raise InfeasibleError(
                 message(
                     "stop '{stop}' at {place} can be reached under no hypothesis: {why}",
-                    stop=stop.id,
+                    stop=stop.said,
                     place=str(site.position_m),
                     why=why,
                 )
