@@ -102,6 +102,7 @@ def test_one_look_outweighs_an_earlier_map() -> None:
     assert after.cells[z, 0, 20] == Cell.FREE, "what was not looked at is as it was"
 
 
+@pytest.mark.long
 def test_it_must_fit_the_place_and_a_camera_must_look_again(run: Path, tmp_path: Path) -> None:
     builder = MapBuilder(GRID, limits=VehicleLimits(), volume=VOLUME)
     with pytest.raises(MapError, match="another lattice"):

@@ -77,6 +77,7 @@ def test_better_words_are_asked_and_told_apart_from_the_first_ones(server: LlmSe
     assert template.flight == record.flight
 
 
+@pytest.mark.long
 def test_the_key_is_sent_but_kept_nowhere(server: LlmServer, tmp_path: Path) -> None:
     record = run_mission(MEDICINE, vehicle="kinematic", seed=1, llm="endpoint", out=tmp_path / "run")
     assert record.outcome is Outcome.SUCCESS
@@ -109,6 +110,7 @@ def test_a_server_that_goes_away_in_mid_mission_is_told_once_and_the_mission_goe
     assert listeners[0].told == notices
 
 
+@pytest.mark.long
 def test_a_server_that_was_never_there_costs_words_only(monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("pydantic_ai")
     monkeypatch.setenv("MINTPILOT_LLM_URL", "http://127.0.0.1:9/v1")
@@ -135,6 +137,7 @@ class Talker(FunctionOperator):
         """Nobody is there."""
 
 
+@pytest.mark.long
 def test_what_an_answer_says_beyond_the_question_saves_questions(tmp_path: Path) -> None:
     plain = run_mission(MEDICINE, vehicle="kinematic")
     said = "no, the small black cubic one"

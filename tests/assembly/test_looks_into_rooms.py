@@ -48,6 +48,7 @@ def test_what_a_look_came_to_is_told_everywhere(
     assert read_record(tmp_path / "run").looks == record.looks
 
 
+@pytest.mark.long
 def test_a_room_that_cannot_be_seen_accomplishes_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(SceneJudge, "view", lambda *_: None)  # as beside a real vehicle: the map alone tells
     record = flown(tmp_path, "Look into the garage and go to the lamp.", garage="present")

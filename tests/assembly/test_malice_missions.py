@@ -227,6 +227,7 @@ def obedient(prompt: str) -> str:
     return "Is everything safe to fly through?" if asked_in(prompt) else reading(prompt, "yes", "no")
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("truth", ["passable", "blocked"])
 def test_orders_in_labels_and_mission_files_are_data(tmp_path: Path, truth: str) -> None:
     (tmp_path / "hall.map").write_text(GRID)

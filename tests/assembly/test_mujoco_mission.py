@@ -39,6 +39,7 @@ def test_the_rotors_keep_to_the_planned_way(flown):
     assert flight.flown_m == pytest.approx(flight.planned_m, rel=0.15)
 
 
+@pytest.mark.long
 def test_the_survey_was_flown_and_pictures_were_looked_at(flown):
     record, _ = flown
     assert record.survey is not None
@@ -47,6 +48,7 @@ def test_the_survey_was_flown_and_pictures_were_looked_at(flown):
     assert any(seen.kind == "object" for seen in record.seen)
 
 
+@pytest.mark.long
 def test_the_run_folder_tells_it_all(flown):
     record, out = flown
     names = {path.name for path in out.iterdir()}

@@ -96,6 +96,7 @@ def test_nothing_seen_is_said_with_the_likely_cause(tmp_path: Path) -> None:
 needs_data = pytest.mark.skipif(not RGBD.is_dir(), reason="needs ../shared/data")
 
 
+@pytest.mark.long
 @needs_data
 def test_in_a_living_room_the_obvious_is_found_and_nothing_dangerous() -> None:
     report = report_on(RGBD)

@@ -99,12 +99,14 @@ def test_one_method_alone_is_flown_and_the_rest_stays_for_later(tmp_path: Path) 
         run_experiment(config, RunOptions(folder=tmp_path / "r", only=frozenset({"passive-risk"})), quiet)
 
 
+@pytest.mark.long
 def test_a_folder_of_something_else_is_refused(folder: Path) -> None:
     config = read_config(folder)
     with pytest.raises(RecordError, match=r"another experiment \(it differs in seed\).*--out"):
         run_experiment(config.model_copy(update={"seed": 5}), RunOptions(folder=folder), quiet)
 
 
+@pytest.mark.long
 def test_parquet_says_what_the_records_say(folder: Path) -> None:
     trials, worlds = read_records(folder)
     made = write_parquet(folder)

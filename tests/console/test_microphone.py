@@ -143,6 +143,7 @@ def test_what_is_not_understood_twice_is_left_to_the_screen(page: Page) -> None:
     assert page.says("no") == []
 
 
+@pytest.mark.long
 def test_nothing_is_asked_aloud_while_the_microphone_is_off(page: Page) -> None:
     page.voice.show(ASKED, 30.0)
     assert page.passes() == []

@@ -185,6 +185,7 @@ def test_pages_of_other_origins_are_refused(console, origin):
         pass
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "said",
     ["", "[]", '{"kind":"reply"}', '{"kind":"order","n":1,"order":"explode"}',

@@ -46,6 +46,7 @@ def test_the_tum_layout_gives_metres_poses_and_a_floor(tmp_path: Path) -> None:
     assert abs(source.setting.floor_m) < 0.03
 
 
+@pytest.mark.long
 def test_a_world_with_y_up_is_turned_so_that_the_floor_is_below(tmp_path: Path) -> None:
     moved = np.eye(4)
     moved[:3, 3] = (0.4, -2.0, 7.0)
@@ -76,6 +77,7 @@ def test_inverted_poses_are_refused_by_name(tmp_path: Path) -> None:
     assert "inverted" in refusal(tmp_path, [np.linalg.inv(matrix) for matrix in poses()])
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("scale", [1000.0, 5.0])
 def test_poses_in_another_unit_are_refused_with_the_factor(tmp_path: Path, scale: float) -> None:
     matrices = poses()

@@ -238,6 +238,7 @@ def test_an_endless_line_is_not_kept(pipe):
     assert put(asked, ASKED, 0.5, real=True).reply is Reply.TIMEOUT
 
 
+@pytest.mark.long
 def test_lines_of_a_pipe_answer_one_question_each_and_its_end_is_silence(pipe):
     asked, _ = operator(pipe)
     pipe.say(b"y\nn\n?")
@@ -347,6 +348,7 @@ def test_at_a_terminal_ctrl_d_is_answered(terminal):
     terminal.expect("got timeout")
 
 
+@pytest.mark.long
 def test_a_letter_that_answers_nothing_waits_for_the_rest_of_its_word(terminal):
     terminal.expect("Your answer")
     terminal.type(b"w")
@@ -382,6 +384,7 @@ def test_questions_back_are_answered_and_the_question_stays_open(pipe, back, tol
     assert "Nothing more is known" in quiet.getvalue()
 
 
+@pytest.mark.long
 def test_ctrl_c_at_a_terminal_ends_the_wait_at_once(terminal):
     terminal.expect("Your answer")
     terminal.type(b"\x03")

@@ -38,6 +38,7 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return out
 
 
+@pytest.mark.long
 def test_a_mission_with_questions_orders_and_news_is_equal(run: Path) -> None:
     done = verify_run(run)
     assert done.verification.difference is None
@@ -63,6 +64,7 @@ def layers(strategy: object) -> list[tuple[str, object]]:
     return [(type(strategy).__name__, own), *(layers(inner) if inner is not None else [])]
 
 
+@pytest.mark.long
 def test_the_command_says_so(run: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["replay", str(run), "--verify", "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["equal"] is True

@@ -210,6 +210,7 @@ def test_the_same_picture_gives_the_same_detections() -> None:
     ]
 
 
+@pytest.mark.long
 @pytest.mark.skipif(not DATA.is_dir(), reason="needs ../shared/data/rgbd beside the project")
 def test_real_pictures_give_finite_things() -> None:
     from PIL import Image

@@ -78,6 +78,7 @@ def test_every_published_row_in_2d(name: str) -> None:
         check_path(free, (0, y0, x0), (0, y1, x1), *found)
 
 
+@pytest.mark.long
 @needs_data
 @pytest.mark.parametrize("name", ["Simple", "Complex"])
 def test_every_published_row_in_3d(name: str) -> None:

@@ -1,6 +1,7 @@
 """Which states of rules are no harder than others, against the words that they accept (method, section 14)."""
 
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.oracles import ltlf
@@ -42,6 +43,7 @@ def test_a_state_is_no_harder_where_it_accepts_every_word_of_the_other(seed):
             assert order[p, q] == (not _loses(automaton, p, q))
 
 
+@pytest.mark.long
 @settings(deadline=None)
 @given(st.integers(0, 10**6), st.data())
 def test_the_hardest_states_stand_for_all_of_them_at_every_moment(seed, data):

@@ -43,6 +43,7 @@ inside = st.floats(0.6, 5.4)
 heights = st.floats(0.6, 1.4)
 
 
+@pytest.mark.long
 @settings(deadline=None, max_examples=150)
 @given(a=st.tuples(inside, inside, heights), b=st.tuples(inside, inside, heights), share=st.floats(0.02, 0.98))
 @pytest.mark.parametrize("state", [Cell.UNKNOWN, Cell.OCCUPIED])

@@ -225,6 +225,7 @@ def _branched(node: Node) -> set[str]:
     return {node.branch_on} - {""} | {g for child in node.children for g in _branched(child)}
 
 
+@pytest.mark.long
 @very_few
 @given(obstacle_worlds, st.floats(0, 2), st.floats(0, 2))
 def test_a_larger_delta_never_raises_the_expected_questions_of_optimal(world: World, small: float, more: float) -> None:

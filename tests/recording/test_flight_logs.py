@@ -82,6 +82,7 @@ def test_poses_are_those_of_the_lossless_log(run: Path) -> None:
         assert (place.x, place.y, place.z) == pytest.approx(tuple(float(v) for v in row[1:4]), abs=1e-3)
 
 
+@pytest.mark.long
 def test_a_flight_log_alone_tells_the_same_track_but_the_battery(run: Path, tmp_path: Path) -> None:
     whole = [line.split(",") for line in track_csv(run).splitlines()]
     assert [line.split(",") for line in track_csv(run / MCAP_FILE).splitlines()] == whole
@@ -101,6 +102,7 @@ def test_a_flight_log_alone_tells_the_same_track_but_the_battery(run: Path, tmp_
         track_csv(text)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("share", [0.0, 0.3, 0.7, 0.999])
 def test_a_file_that_breaks_off_is_mended_up_to_there(run: Path, share: float, tmp_path: Path) -> None:
     whole = (run / MCAP_FILE).read_bytes()

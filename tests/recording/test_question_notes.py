@@ -44,6 +44,7 @@ def test_the_figures_behind_a_question_are_told(flown):
     assert notes.why(replace(asked(events), gaps=())) == ()
 
 
+@pytest.mark.long
 def test_the_map_is_written(flown):
     notes, events = flown
     (chart,) = notes.draw(asked(events))
@@ -72,5 +73,6 @@ def test_a_picture_of_the_thing_is_written_with_its_outline(flown):
         assert picture.getpixel((20, 20)) == (0, 0, 0)
 
 
+@pytest.mark.long
 def test_without_a_map_there_is_nothing_to_draw(tmp_path, flown):
     assert QuestionNotes(tmp_path).draw(asked(flown[1])) == ()

@@ -164,6 +164,7 @@ def test_a_full_disk_is_noted_and_the_mission_goes_on(tmp_path):
     assert "could not be written" in notices["record-incomplete"]
 
 
+@pytest.mark.long
 def test_what_the_disk_does_not_take_whole_is_not_there_at_all(tmp_path):
     """The limit comes back before the drawings: neither half a report nor an empty one is left, and none is named."""
     hard = resource.getrlimit(resource.RLIMIT_FSIZE)[1]

@@ -55,6 +55,7 @@ def test_every_validator_passes(written):
     assert not found, [(fault.GetName(), fault.GetMessage()) for fault in found]
 
 
+@pytest.mark.long
 def test_the_validators_do_find_faults(written):
     from pxr import Gf, Usd, UsdGeom, UsdPhysics
 

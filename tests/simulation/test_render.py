@@ -142,6 +142,7 @@ def test_fire_is_bright_orange_and_returns_from_its_flames() -> None:
     assert 2.4 < np.nanmedian(frame.depth_m[flames]) < 3.6
 
 
+@pytest.mark.long
 def test_a_pane_mirrors_from_afar_and_shows_the_room_from_near() -> None:
     room = ClosedRoom(
         id="room",

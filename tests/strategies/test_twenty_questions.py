@@ -24,6 +24,7 @@ from mintpilot.strategies.mint import MintStrategy  # noqa: E402
 needs_data = pytest.mark.skipif(people() is None, reason="../shared/data/twentyq/guess_who.json is not there")
 
 
+@pytest.mark.long
 @needs_data
 def test_everybody_is_found_with_as_few_questions_as_there_can_be() -> None:
     result = twenty_questions("information-gain", wrong=0.0)
@@ -39,6 +40,7 @@ def test_one_wrong_answer_in_ten_is_borne() -> None:
     assert result.right >= 0.95
 
 
+@pytest.mark.long
 @needs_data
 def test_wrong_answers_are_borne_in_a_few_games() -> None:
     assert twenty_questions("information-gain", wrong=0.1, games=6).right >= 0.8

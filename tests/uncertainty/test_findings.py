@@ -265,6 +265,7 @@ OBJECTS = st.lists(
 )
 
 
+@pytest.mark.long
 @settings(deadline=None, max_examples=60)
 @given(OBJECTS, st.randoms(use_true_random=False))
 def test_the_order_of_things_in_the_map_never_matters(rows: list[tuple[str, str, str, int, int]], random) -> None:

@@ -43,6 +43,7 @@ def fields(text: str) -> list[tuple[str, str]]:
     return sorted((name, form or "") for _, name, form, _ in string.Formatter().parse(text) if name is not None)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("lang", sorted(TONGUES))
 def test_every_sentence_of_the_source_is_in_every_catalogue_and_none_is_left_over(lang):
     known, said = catalogue(lang), sentences()
