@@ -6,9 +6,11 @@ import json
 import os
 from dataclasses import replace
 from pathlib import Path
+from typing import get_args
 
 import pytest
 
+from mintpilot.cli.bench_faults import AdapterName
 from mintpilot.conformance.faults.campaign import RECORDS, FaultStore, counts, fly, planned, run_campaign
 from mintpilot.conformance.faults.drawing import KINDS, drawn
 from mintpilot.conformance.faults.kinds import RULES, Adapter, Fault, FaultKind, rule_of
@@ -123,3 +125,7 @@ def test_a_line_that_is_missing_or_changed_is_found(tmp_path: Path) -> None:
         kept(tmp_path / "run", written=written.get(), refused=0, verdict=replace(ENDED, outcome=Outcome(last)))
     )
     assert {breach.rule for breach in found} >= {"record lost", "record unreadable"}
+
+
+def test_the_command_names_every_adapter() -> None:
+    assert set(get_args(AdapterName)) == {adapter.value for adapter in Adapter}

@@ -6,7 +6,7 @@ import json as json_module
 import sys
 from dataclasses import asdict
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal, TypeAlias
 
 from mintpilot.cli.bench_flags import Flag, Json
 from mintpilot.cli.exits import ExitCode, guarded
@@ -15,6 +15,7 @@ from mintpilot.core.errors import InputError
 if TYPE_CHECKING:
     from mintpilot.conformance.faults.records import FaultRecord
 
+AdapterName: TypeAlias = Literal["kinematic", "link", "mujoco", "doubles", "console", "voice"]
 EVERY = 50
 """Progress is told after so many trials."""
 
@@ -24,6 +25,7 @@ def faults(
     trials: int = 300,
     out: Path = Path("runs/faults"),
     jobs: int = 2,
+    adapter: tuple[AdapterName, ...] = (),
     json: Json = False,
     debug: Flag = False,
 ) -> ExitCode:
@@ -36,6 +38,7 @@ def faults(
         trials: Number of missions, over all adapters; a whole campaign has 10000.
         out: Folder of records.
         jobs: Missions at once.
+        adapter: Fly the missions of this adapter only; may be given several times. Default: all.
         json: Print one JSON object, and nothing else, on standard output.
         debug: Show the traceback of an error.
     """
@@ -43,17 +46,17 @@ def faults(
     def work() -> ExitCode:
         if trials < 1 or jobs < 1:
             raise InputError(f"--trials {trials} --jobs {jobs}: at least 1 of each")
-        return _bench(trials, out, jobs, as_json=json)
+        return _bench(trials, out, jobs, adapter, as_json=json)
 
     return guarded(work, as_json=json, debug=debug)
 
 
-def _bench(trials: int, out: Path, jobs: int, *, as_json: bool) -> ExitCode:
+def _bench(trials: int, out: Path, jobs: int, only: tuple[str, ...], *, as_json: bool) -> ExitCode:
     from mintpilot.benchmark.intervals import clopper_pearson_upper
     from mintpilot.conformance.faults.campaign import FaultStore, counts, lacking, planned, run_campaign
     from mintpilot.conformance.faults.summary import adapter_rows, fault_rows
 
-    wanted = counts(trials)
+    wanted = {adapter: n for adapter, n in counts(trials).items() if not only or adapter.value in only}
     left_out = {adapter: why for adapter in wanted if (why := lacking(adapter))}
     for adapter, why in left_out.items():
         print(f"{adapter.value}: left out: {why}", file=sys.stderr)
