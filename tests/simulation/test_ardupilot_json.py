@@ -23,6 +23,9 @@ pytest.importorskip("mujoco", reason="needs MuJoCo")
 RATE_HZ = 400
 
 
+pytestmark = pytest.mark.long  # they share one drone, in this order
+
+
 class Peer:
     """What ArduCopter does at this interface: sends servo packets, reads lines of JSON."""
 
@@ -95,7 +98,6 @@ def served() -> Iterator[tuple[ArdupilotServer, Peer]]:
     server.close()
 
 
-@pytest.mark.long
 def test_it_stands_rises_turns_and_goes_where_it_is_sent(served: tuple[ArdupilotServer, Peer]) -> None:
     _, peer = served
     state = peer.send([1000.0] * 4, number=0)
@@ -128,7 +130,6 @@ def test_a_repeated_packet_makes_no_step_and_a_restart_begins_anew(served: tuple
     assert np.linalg.norm(again["position"]) < 0.02
 
 
-@pytest.mark.long
 def test_pictures_are_of_the_place_where_it_is(served: tuple[ArdupilotServer, Peer]) -> None:
     server, peer = served
     peer.send([1000.0] * 4)
