@@ -22,6 +22,7 @@ from mintpilot.interaction.scripted import RecordedOperator
 from mintpilot.mission.loop import fly_mission
 from mintpilot.mission.replay import verify
 from mintpilot.mission.worker import InlineWorker
+from mintpilot.recording.event_log import EVENTS_SCHEMA_VERSION
 from mintpilot.recording.recorders import MemoryRecorder
 
 BUSY = {"orders": [(2.0, Order.HOLD), (6.0, Order.CONTINUE), (14.0, Order.RETURN)]}
@@ -144,7 +145,7 @@ def test_records_that_cannot_be_replayed_say_why(run: Path, tmp_path: Path) -> N
         ("missing", b"".join([*lines[:20], *lines[21:]])),
         ("foreign", b'{"hello": "world"}\n'),
         ("empty", b""),
-        ("newer", b"".join(lines).replace(b'"schema_version":5', b'"schema_version":9', 1)),
+        ("newer", b"".join(lines).replace(b'"schema_version":%d' % EVENTS_SCHEMA_VERSION, b'"schema_version":99', 1)),
     ):
         with pytest.raises(RecordError):
             verify_run(written(name, data))

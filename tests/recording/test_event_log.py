@@ -23,7 +23,7 @@ from mintpilot.conformance.recorder import sample_events
 from mintpilot.core import events as ev
 from mintpilot.core.errors import RecordError
 from mintpilot.core.observation import Frame
-from mintpilot.recording.event_log import EventLogWriter, read_event_log
+from mintpilot.recording.event_log import EVENTS_SCHEMA_VERSION, EventLogWriter, read_event_log
 
 from .conftest import tell
 from .values import differences, replaced
@@ -61,7 +61,7 @@ def chained(*lines: dict[str, Any]) -> bytes:
     return out
 
 
-HEADER = {"format": "mintpilot-events", "schema_version": 5, "program": "9.9", "at_s": 0.0}
+HEADER = {"format": "mintpilot-events", "schema_version": EVENTS_SCHEMA_VERSION, "program": "9.9", "at_s": 0.0}
 
 
 def seen(event: Any) -> Any:
@@ -242,8 +242,9 @@ def test_an_edited_first_line_and_a_line_after_the_end_are_found(tmp_path, told)
         (b"", "holds no event"),
         (b'{"event":"MissionStarted","number":0,"at_s":1.0}\n', "older version: readable as a report, not replayable"),
         (
-            chained({**HEADER, "schema_version": 6}),
-            r"schema version 6, this program reads 5; read it with MintPilot '9\.9'",
+            chained({**HEADER, "schema_version": EVENTS_SCHEMA_VERSION + 1}),
+            rf"schema version {EVENTS_SCHEMA_VERSION + 1}, this program reads {EVENTS_SCHEMA_VERSION}; "
+            r"read it with MintPilot '9\.9'",
         ),
         (b"\xff\xfe nonsense\n", "is not an event log of MintPilot"),
         (b'{"format":"other"}\n', "is not an event log"),

@@ -118,7 +118,7 @@ def test_a_conflict_names_the_rules_that_make_it():
         patterns.at_end(proposition("in(hall)")),
         patterns.never(A),
     ]
-    assert [r.text for r in conflicting(rules)] == ["first at a, then at b", "never at a"]
+    assert [str(r.text) for r in conflicting(rules)] == ["first at a, then at b", "never at a"]
 
 
 def test_a_rule_that_says_nothing_is_known():

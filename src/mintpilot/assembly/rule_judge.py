@@ -69,4 +69,4 @@ class RuleJudge(Judge, Recorder):
     def broken(self) -> list[str]:
         """Words of the rules that the flight so far has broken, if it ended now."""
         trace = self._trace
-        return [rule.text for rule in self.world.task.rules if not is_kept(rule.formula, trace.of, trace.moments)]
+        return [str(rule.text) for rule in self.world.task.rules if not is_kept(rule.formula, trace.of, trace.moments)]

@@ -28,7 +28,7 @@ def with_rules(task: Task, regions: Mapping[str, str], more: tuple[Rule, ...]) -
     rules = (*(_bound(rule, regions) for rule in task.rules), *more)
     against = conflicting(rules) if task.rules else ()
     if against:
-        raise InputError(f"no flight can keep {' and '.join(repr(rule.text) for rule in against)}: leave one out")
+        raise InputError(f"no flight can keep {' and '.join(repr(str(rule.text)) for rule in against)}: leave one out")
     return replace(task, rules=rules)
 
 

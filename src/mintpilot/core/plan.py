@@ -12,7 +12,7 @@ import numpy as np
 from mintpilot.core.errors import MissionError
 from mintpilot.core.gap import Assumptions, KnowledgeGap
 from mintpilot.core.geometry import Floats, Vec3, frozen
-from mintpilot.core.message import NOTHING, Message, message, verbatim
+from mintpilot.core.message import NOTHING, Message, joined, message, verbatim
 from mintpilot.core.rule import Ruling
 from mintpilot.core.semantic_map import SemanticMap
 from mintpilot.core.task import Action
@@ -152,7 +152,7 @@ class LeftUndone:
     """Flight time that doing it besides would take (or, alone, where it is too far even then), seconds."""
     available_s: float | None = None
     """Flight time that is left for it, or the price that it is worth, seconds."""
-    rules: tuple[str, ...] = ()
+    rules: tuple[Message, ...] = ()
     """Words of the rules that do not allow it."""
 
     @property
@@ -180,7 +180,7 @@ class LeftUndone:
             case Shortage.UNSEEN:
                 return message("it is none of the things that were seen")
             case Shortage.RULE:
-                return message("it cannot be done while this is kept: {rules}", rules="; ".join(self.rules))
+                return message("it cannot be done while this is kept: {rules}", rules=joined(self.rules, "; "))
 
 
 def _seconds(needed: float, given: float) -> tuple[str, str]:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from mintpilot.core.geometry import Bools, Ints, frozen
+from mintpilot.core.message import Message
 
 _KEPT_OUT = re.compile(r"G !touches\(([^()]*)\)")
 
@@ -57,7 +58,7 @@ class Proposition:
 class Rule:
     """One rule, as it was given."""
 
-    text: str
+    text: Message
     """In plain words, without a full stop."""
     formula: str
     """In LTLf."""

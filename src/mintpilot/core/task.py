@@ -9,7 +9,7 @@ from enum import StrEnum
 
 from mintpilot.core.errors import MissionError
 from mintpilot.core.geometry import Vec3
-from mintpilot.core.message import Filling, Message, Named, joined, message
+from mintpilot.core.message import Message, Named, joined, message
 from mintpilot.core.observation import Attribute, RegionKind
 from mintpilot.core.rule import Rule
 
@@ -179,15 +179,7 @@ def step_lines(task: Task) -> Iterator[Message]:
         ]
         yield message("keep out of: {kinds}", kinds=joined([*kinds, *near], ", "))
     for rule in task.rules:
-        yield message("rule: {rule}", rule=_rule_said(rule))
-
-
-def _rule_said(rule: Rule) -> Filling:
-    """A rule of the instruction about one place is said in any language; others in the words that they have."""
-    start, _, place = rule.text.partition("never enter ")
-    if rule.keeps_out_of and not start:
-        return message("never enter {place}", place=Named(place))
-    return rule.text
+        yield message("rule: {rule}", rule=rule.text)
 
 
 def _step(n: int, goal: SubGoal) -> Step:

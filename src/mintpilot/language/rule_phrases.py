@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from mintpilot.core import rule_patterns
+from mintpilot.core.message import Message, Named, message
 from mintpilot.core.observation import RegionKind
 from mintpilot.core.rule import About, Proposition, Rule
 from mintpilot.core.task import Action, Reference, SubGoal, Task
@@ -26,7 +27,9 @@ def names_region(reference: Reference) -> bool:
 
 def never_enter(reading: Reading, reference: Reference) -> None:
     """``never enter the smoke``."""
-    _add(reading, f"never enter {reference.phrase}", rule_patterns.never(_touches(reference)))
+    _add(
+        reading, message("never enter {place}", place=Named(reference.phrase)), rule_patterns.never(_touches(reference))
+    )
 
 
 def stay_within(reading: Reading, found: Found) -> None:
@@ -36,7 +39,7 @@ def stay_within(reading: Reading, found: Found) -> None:
         if hides or reference.position_m is not None or is_person(reference) or _is_any_room(reference):
             refuse(reference.phrase, "is nothing to stay within: name a region of the map, such as the hall")
         inside = rule_patterns.always(Proposition(about=About.IN, subject=_name(reference)))
-        _add(reading, f"always stay within {reference.phrase}", inside)
+        _add(reading, message("always stay within {place}", place=Named(reference.phrase)), inside)
 
 
 def enter_later(reading: Reading, found: Found) -> None:
@@ -59,10 +62,10 @@ def ordered(reading: Reading, earlier: int, later: int) -> None:
         return
     first = _said(goals[earlier])
     for reference in entered:
-        text = f"never enter {reference.phrase} before this is done: {first}"
+        text = message("never enter {place} before this is done: {step}", place=Named(reference.phrase), step=first)
         _add(reading, text, rule_patterns.never_before(_touches(reference), _done(reading, earlier)))
     if not entered:
-        text = f"never {_said(goals[later])} before this is done: {first}"
+        text = message("never {later} before this is done: {step}", later=_said(goals[later]), step=first)
         _add(reading, text, rule_patterns.never_before(_done(reading, later), _done(reading, earlier)))
 
 
@@ -78,7 +81,11 @@ def come_back(reading: Reading) -> None:
             refuse("at the end", "cannot be said of a search for people: say the search last")
         reading.add(Action.GO, reading.home())
         back = _done(reading, len(reading.subgoals) - 1)
-        _add(reading, f"come back to {reading.home().phrase} at the end", rule_patterns.at_end(back))
+        _add(
+            reading,
+            message("come back to {place} at the end", place=Named(reading.home().phrase)),
+            rule_patterns.at_end(back),
+        )
 
 
 def _is_any_room(reference: Reference) -> bool:
@@ -105,9 +112,9 @@ def _name(reference: Reference) -> str:
     return str(kind)
 
 
-def _said(goal: SubGoal) -> str:
-    return str(Task(instruction="", subgoals=(goal,)).steps[0].text)
+def _said(goal: SubGoal) -> Message:
+    return Task(instruction="", subgoals=(goal,)).steps[0].text
 
 
-def _add(reading: Reading, text: str, rule: Rule) -> None:
+def _add(reading: Reading, text: Message, rule: Rule) -> None:
     reading.rules.append(Rule(text=text, formula=rule.formula))

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator
 
 from mintpilot.core import rule_patterns as patterns
 from mintpilot.core.errors import MintPilotError
+from mintpilot.core.message import verbatim
 from mintpilot.core.observation import RegionKind
 from mintpilot.core.rule import About, Rule
 from mintpilot.mission_file.form_checks import nearest
@@ -38,7 +39,7 @@ _PATTERNS: dict[frozenset[str], Callable[[RuleSpec], Rule]] = {
 def _written(text: str) -> Rule:
     """A rule as somebody wrote it in LTLf. Raises as `mintpilot.rules.parsing.parse`."""
     parse(text)
-    return Rule(text=text.strip(), formula=text.strip())
+    return Rule(text=verbatim(text.strip()), formula=text.strip())
 
 
 def rules_of(file: MissionFile) -> tuple[Rule, ...]:

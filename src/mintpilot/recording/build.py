@@ -90,7 +90,7 @@ def build_record(history: History, *, run_dir: str = "", unfinished: str = "") -
         achieved=_achieved(ended.verdict, speech) if ended else (),
         left=_left(ended.verdict, speech) if ended else (),
         looks=_looks(ended.verdict, history.map, run_dir, speech) if ended else (),
-        rules=_rules(started.task.rules, ended.verdict if ended else None) if started else (),
+        rules=_rules(started.task.rules, ended.verdict if ended else None, speech) if started else (),
         waiting=_waiting(ended.verdict) if ended else None,
         flight=flight,
         survey=flight_record(survey_legs) if survey_legs else None,
@@ -143,10 +143,14 @@ def _looks(verdict: Verdict, map: SemanticMap | None, run_dir: str, speech: Spee
     )
 
 
-def _rules(rules: Sequence[Rule], verdict: Verdict | None) -> tuple[RuleRecord, ...]:
+def _rules(rules: Sequence[Rule], verdict: Verdict | None, speech: Speech) -> tuple[RuleRecord, ...]:
     broken = verdict.rules_broken if verdict is not None else None
     return tuple(
-        RuleRecord(text=rule.text, formula=rule.formula, kept=None if broken is None else rule.text not in broken)
+        RuleRecord(
+            text=speech(rule.text),
+            formula=rule.formula,
+            kept=None if broken is None else str(rule.text) not in broken,
+        )
         for rule in rules
     )
 

@@ -26,7 +26,7 @@ from mintpilot.recording.event_codec import EventCodec
 from mintpilot.recording.event_lines import MAX_LINE_BYTES, opened, plain_json, sealed
 
 EVENTS_FILE = "events.ndjson"
-EVENTS_SCHEMA_VERSION = 5
+EVENTS_SCHEMA_VERSION = 6
 """Of the log; raised when a field is added without a default, renamed or removed. Version 1 was lossy."""
 _FORMAT = "mintpilot-events"
 
