@@ -8,7 +8,9 @@ import numpy as np
 import pytest
 from tests.assembly.test_instruction_missions import ROOMS, flown, written
 
+from mintpilot.assembly.api import plan_mission
 from mintpilot.assembly.validation import check_mission
+from mintpilot.cli.think import lines_of
 from mintpilot.core.mission import Outcome
 
 RADIUS_M = 0.2
@@ -80,3 +82,14 @@ def test_it_comes_back_at_the_end(tmp_path: Path) -> None:
 )
 def test_a_region_that_is_not_there_is_told_with_those_that_are(tmp_path: Path, words: str, said: str) -> None:
     assert any(said in problem.message for problem in check_mission(mission(tmp_path, words, [LAB])))
+
+
+def test_rules_are_shown_with_the_steps_before_anything_is_flown(tmp_path: Path) -> None:
+    words = "Look into the garage before you go through the smoke. Never enter the lab. Go to the lamp"
+    path = mission(tmp_path, words, [CLOUD, {**LAB, "box": {"lo_m": [2, 4, 0], "hi_m": [3, 5, 2]}}])
+    report = plan_mission(path)
+    assert report.rules == ["never enter the smoke before this is done: look into the garage", "never enter the lab"]
+    shown = list(lines_of(report))
+    assert [f"  rule: {rule}" for rule in report.rules] == shown[3:5]
+    told = list(lines_of(plan_mission(path, lang="de")))
+    assert told[3].startswith("  Regel: nie hinein: der Rauch, bevor dies getan ist: hineinsehen")

@@ -7,7 +7,7 @@ from pydantic import BaseModel, ConfigDict
 from mintpilot.core.gap import Assumptions, KnowledgeGap
 from mintpilot.core.ports import Ask, Fly
 from mintpilot.core.query import Question
-from mintpilot.core.task import Task
+from mintpilot.core.task import Task, step_lines
 from mintpilot.core.tree import GapExplanation, Mint
 from mintpilot.mission.preview import Preview
 from mintpilot.recording.record import TreeRecord
@@ -94,8 +94,12 @@ class DeliberationReport(_Report):
     """What will be done, in order."""
     keep_out: list[str]
     """What is stayed out of or away from."""
+    rules: list[str]
+    """What the flight keeps from take-off to its end, in words."""
     slowly: bool
     """True where the whole flight is flown slowly."""
+    understood: list[str]
+    """All of that for a person to read, line by line."""
     needs_confirmation: bool
     """True where a language model read the instruction: it is flown only after the operator's yes."""
     gaps: list[GapReport]
@@ -145,7 +149,9 @@ def deliberation_report(
         language=speech.lang,
         steps=steps_report(task, speech),
         keep_out=list(task.keep_out),
+        rules=[speech(rule.text) for rule in task.rules],
         slowly=task.slowly,
+        understood=[speech(line) for line in step_lines(task)],
         needs_confirmation=task.needs_confirmation,
         strategy=strategy,
         gaps=[

@@ -163,7 +163,7 @@ def told(event: Event, stops: Mapping[str, Message] | None = None) -> tuple[Mess
     if isinstance(event, MapUpdated):
         known = event.map
         seen = message(
-            "Map: objects: {objects}, regions: {regions}, rooms: {rooms}.",
+            "Map: {objects} × object, {regions} × region, {rooms} × room.",
             objects=len(known.objects),
             regions=len(known.regions),
             rooms=len(known.rooms),

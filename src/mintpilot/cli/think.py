@@ -42,17 +42,13 @@ def lines_of(report: DeliberationReport) -> Iterator[str]:
     """The report for people, line by line."""
     speech = Speech(report.language)
     head = message(
-        "Mission {name}, strategy {strategy}: knowledge gaps: {count}",
+        "Mission {name}, strategy {strategy}, knowledge gaps: {count}",
         name=report.mission,
         strategy=report.strategy,
         count=len(report.gaps),
     )
     yield speech(head)
-    yield from (f"  {step.n} {step.text}" for step in report.steps)
-    if report.slowly:
-        yield f"  {speech.label('the whole flight slowly')}"
-    if report.keep_out:
-        yield f"  {speech(message('keep out of: {kinds}', kinds=', '.join(report.keep_out)))}"
+    yield from (f"  {line}" for line in report.understood)
     for gap in report.gaps:
         yield from _gap_lines(gap, speech)
     if report.tree_text:

@@ -26,6 +26,7 @@ class _Row(TypedDict):
     text: str
     steps: list[dict[str, int | str]]
     keep_out: list[str]
+    rules: list[str]
     slowly: bool
     needs_confirmation: bool
     refused: _Refused | None
@@ -90,6 +91,7 @@ def _row(one: UnderstoodInstruction) -> _Row:
             {"n": s.n, "action": s.action, "target": s.target, "place": s.place, "text": str(s.text)} for s in steps
         ],
         keep_out=list(task.keep_out) if task is not None else [],
+        rules=[str(rule.text) for rule in task.rules] if task is not None else [],
         slowly=task is not None and task.slowly,
         needs_confirmation=task is not None and task.needs_confirmation,
         refused=None if task is not None else _Refused(word=one.word, reason=one.reason),
