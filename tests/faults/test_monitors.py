@@ -152,3 +152,12 @@ def test_landing_needs_ground_that_is_known_free(at_m, found) -> None:
     ledger = ledger_with()
     ledger.commands.append(Commanded(time_s=1.0, motion=Land(id=1), at_m=at_m, maps=1))
     assert rules_of(commanded_safely(ledger, sample_world())) == found
+
+
+@pytest.mark.parametrize("on_the_wall", [False, True])
+def test_only_on_the_walls_time_is_a_busy_machine_an_excuse(on_the_wall: bool) -> None:
+    moving = [(t, START[0] + 0.1 * t, *START[1:]) for t in (0.0, 0.5, 1.0, 20.0, 20.5)]
+    ledger = replace(ledger_with(), trace=moving, on_the_wall=on_the_wall, now_s=20.5)
+    ledger.known.append((1.0, FaultKind.PILOT, ""))
+    verdict = Verdict(outcome=Outcome.ABORTED, reason=NOTHING)
+    assert rules_of(became_safe(ledger, verdict)) == ([] if on_the_wall else ["not safe in time"])

@@ -105,6 +105,7 @@ def on_console(draw: Draw, world: World, ledger: Ledger, talk: Talk) -> Iterator
     from mintpilot.console import WebConsole
 
     calm = replace(draw, faults=())
+    ledger.on_the_wall = True
     with WebConsole(understand=talk.understand, order_of=talk.order_of) as console:
         person = Person(draw=draw, world=world, ledger=ledger, console=console)
         person.begin()

@@ -68,7 +68,7 @@ def on_doubles(draw: Draw, world: World, ledger: Ledger, talk: Talk) -> Iterator
         seed=draw.number,
     )
     ours = replace(draw, faults=tuple(fault for fault in draw.faults if fault.kind not in _SWITCHED))
-    ledger.simulated = False
+    ledger.simulated, ledger.on_the_wall = False, True
     with VehicleDouble(setup) as double:
         watched = Watched(double, world, draw, ledger)
 

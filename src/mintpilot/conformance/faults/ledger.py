@@ -113,6 +113,8 @@ class Ledger:
     """From when on physics leaves no control that could keep the vehicle in the air."""
     simulated: bool = True
     """Whether a simulator tells the mission what was touched; a real vehicle's cannot know."""
+    on_the_wall: bool = False
+    """Whether mission time passes as on the wall, so that a busy machine delays the mission."""
     crashed: str = ""
     """What the double at the other end of a link says that it flew into; empty: nothing."""
     left_flying: str = ""

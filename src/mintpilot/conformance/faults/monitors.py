@@ -302,7 +302,9 @@ def ended_in_time(ledger: Ledger, faults: Iterable[Fault]) -> Iterator[Breach]:
 
 
 def starved_s(ledger: Ledger, at_s: float, until_s: float) -> float:
-    """In real time: how long the machine did not let the mission run between these times, seconds."""
+    """How long the machine did not let a mission on the wall's time run between these times, seconds."""
+    if not ledger.on_the_wall:
+        return 0.0
     times = ledger.array()[:, 0]
     gaps_s = np.diff(times[(times >= at_s - STARVED_S) & (times <= until_s)])
     return float(gaps_s[gaps_s > STARVED_S].sum())
